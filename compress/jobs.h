@@ -1,0 +1,45 @@
+// Stage 2 as a whole: compress and tabulate a bundle.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace prt {
+
+struct CompressSettings {
+    std::string bundlePath;
+    int components = 16;  ///< 1..n²
+};
+struct CompressReport {
+    int components = 0;
+    size_t points = 0;
+    double explainedVariance = 0;
+    double relativeRmse = 0;  ///< of coefficients, over valid points
+    double rmse = 0;
+    double seconds = 0;
+    size_t bytes = 0;  ///< of pca.exr
+};
+/// PCA of visibility.exr over valid points, weights for all points; writes pca.exr.
+/// @throws UsageError  components above n² (names the limit)   @throws InputError, OutputError
+CompressReport runCompress(const CompressSettings& settings);
+
+struct TabulateSettings {
+    std::string bundlePath;
+    std::vector<std::string> environments;  ///< files or sky:NAME
+    std::string kind = "triple-product";    ///< or "light-cosine"
+    std::string layout = "cube";
+    int size = 32;
+};
+struct TabulateRow {
+    std::string environment, file;
+    size_t bytes = 0;
+    double seconds = 0;
+};
+std::vector<TabulateRow> runTabulate(const TabulateSettings& settings);
+
+/// File name of a table within its bundle: tables/ENV.KIND.LAYOUT.exr (characters outside [A-Za-z0-9_-]
+/// become '_').
+std::string tableFileName(const std::string& environmentName, const std::string& kind,
+                          const std::string& layout);
+
+}  // namespace prt

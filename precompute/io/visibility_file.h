@@ -1,0 +1,72 @@
+// visibility.exr and pca.exr: coefficients per texel or per vertex.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "precompute/math/vec.h"
+
+namespace prt {
+
+enum class PointDomain { Texel, Vertex };
+const char* pointDomainName(PointDomain domain);  ///< "texel", "vertex"
+
+/// Why a texel (or vertex) has the value it has; the channel `validity`.
+enum class Validity : uint32_t {
+    Empty = 0,         ///< no surface here; zeros
+    Valid = 1,         ///< baked here
+    GutterFilled = 2,  ///< outside the charts, copied from the nearest valid texel
+    InsideFilled = 3,  ///< its point lies inside geometry, copied from the nearest valid texel of the chart
+    Inside = 4,        ///< inside geometry with no valid texel near; baked value kept
+};
+inline constexpr int kValidityCount = 5;
+const char* validityName(
+    Validity validity);  ///< "empty", "valid", "gutter_filled", "inside_filled", "inside"
+
+/// Grid of points: the atlas per texel; per vertex, vertices in mesh.glb order wrapped into rows of `width`.
+struct PointGrid {
+    PointDomain domain = PointDomain::Texel;
+    int width = 0, height = 0;
+    size_t count = 0;  ///< points in use: width·height per texel, the number of vertices per vertex
+};
+
+/// Row length of per-vertex files.
+inline constexpr int kVertexRowLength = 1024;
+/// Grid for so many vertices.
+PointGrid vertexGrid(size_t vertexCount);
+
+struct VisibilityMap {
+    PointGrid grid;
+    int shOrder = 0;
+    std::vector<float> coefficients;  ///< [count×n²]
+    std::vector<Validity> validity;   ///< [count]
+    std::vector<float> ao;            ///< [count] cosine-weighted, 1 = open
+    std::vector<Vec3f> normals;       ///< [count] geometric, world
+    std::map<std::string, std::string>
+        attributes;  ///< projection kind and parameters, written as EXR string attributes
+};
+
+/// Channels V.00…V.NN (zero-padded shIndex), ao, normal.X/Y/Z (float), validity (uint); ZIP, scanlines.
+/// @throws OutputError
+void writeVisibilityFile(const std::string& path, const VisibilityMap& map);
+/// Checks conventions, channels and sizes before it allocates.
+/// @throws InputError
+VisibilityMap readVisibilityFile(const std::string& path);
+
+/// V ≈ mean + Σ_m w_m basis_m.
+struct PcaMap {
+    PointGrid grid;
+    int shOrder = 0;
+    int components = 0;
+    std::vector<float> mean;      ///< [n²]
+    std::vector<float> basis;     ///< [M×n²], rows orthonormal
+    std::vector<float> weights;   ///< [count×M]
+    std::vector<float> variance;  ///< [M] eigenvalues of the covariance, falling
+    std::map<std::string, std::string> attributes;
+};
+void writePcaFile(const std::string& path, const PcaMap& map);
+PcaMap readPcaFile(const std::string& path);
+
+}  // namespace prt

@@ -1,0 +1,41 @@
+// Which point of the surface a texel stands for.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "precompute/io/scene.h"
+
+namespace prt {
+
+/// A point on the surface to bake at.
+struct SurfacePoint {
+    Vec3f position;
+    Vec3f normal;       ///< geometric, unit
+    uint32_t triangle;  ///< index in Scene order
+};
+
+inline constexpr uint32_t kNoPoint = 0xffffffffu;
+
+struct TexelSurface {
+    int width = 0, height = 0;
+    std::vector<SurfacePoint> points;    ///< one per texel touched by a chart, in row order
+    std::vector<uint32_t> pointOfTexel;  ///< [width×height] index into points, or kNoPoint
+    std::vector<uint32_t> chartOfTexel;  ///< [width×height] id of the connected piece in uv1, or kNoPoint
+};
+
+/// Every texel that the bilinear filter can fetch for a point of a chart (conservatively: the texel square,
+/// grown by half a texel, touches a triangle) gets the point of the chart nearest to its centre in texture
+/// space: the centre itself where it lies on the chart.
+TexelSurface rasterizeTexels(const Scene& scene, int width, int height);
+
+/// For texels that have no value: the nearest texel (Euclidean, in texels) that has one, itself for those
+/// that do.
+/// @param has         [width×height] non-zero where there is a value
+/// @param group       [width×height] or empty: only texels of the same group may be the source
+/// @param reachTexels farthest source considered
+/// @return [width×height] index of the source, kNoPoint where none is in reach
+std::vector<uint32_t> nearestFilledTexel(const std::vector<uint8_t>& has, const std::vector<uint32_t>& group,
+                                         int width, int height, int reachTexels);
+
+}  // namespace prt

@@ -1,0 +1,53 @@
+// Rays against a static triangle mesh. The only place that knows Embree.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+
+#include "precompute/math/vec.h"
+
+namespace prt {
+
+struct RayHit {
+    uint32_t triangle = 0xffffffffu;  ///< 0xffffffff: nothing hit
+    float distance = 0;
+    float u = 0, v = 0;     ///< barycentric coordinates of corners 1 and 2
+    bool backFace = false;  ///< the ray meets the clockwise side
+};
+
+class RayCaster {
+  public:
+    /// Builds the acceleration structure (robust intersection).
+    /// @param positions  @param indices  3 per triangle, in range
+    /// @throws InputError  no memory
+    RayCaster(std::span<const Vec3f> positions, std::span<const uint32_t> indices);
+    ~RayCaster();
+    RayCaster(RayCaster&&) noexcept;
+    RayCaster& operator=(RayCaster&&) noexcept;
+
+    /// One direction from many near points: occluded[i] = 1 when anything lies on the ray from origins[i].
+    /// @param origins     [N] already offset (offsetOrigin), near each other for speed, N ≤ 4096
+    /// @param occluded    [N] out
+    void occluded(std::span<const Vec3f> origins, const Vec3f& direction, std::span<uint8_t> occluded) const;
+
+    /// Many directions from one point.
+    void occluded(const Vec3f& origin, std::span<const Vec3f> directions, std::span<uint8_t> occluded) const;
+
+    /// First hit.
+    RayHit firstHit(const Vec3f& origin, const Vec3f& direction) const;
+
+    /// Start of rays that leave a surface point into the hemisphere of its geometric normal: moved along the
+    /// normal by an offset scaled to the scene's extent and to float precision at the position.
+    Vec3f offsetOrigin(const Vec3f& position, const Vec3f& normal) const;
+
+    /// "SSE2", "AVX", "AVX2" or "AVX512": what Embree runs on here; results may differ in rare grazing rays.
+    std::string instructionSet() const;
+
+  private:
+    struct State;
+    std::unique_ptr<State> state_;
+};
+
+}  // namespace prt

@@ -1,0 +1,47 @@
+// Visibility of surface points in spherical harmonics.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "precompute/mesh/texel_raster.h"
+#include "precompute/rays/ray_caster.h"
+
+namespace prt {
+
+struct BakeOptions {
+    int shOrder = 6;         ///< 1..kMaxBundleShOrder
+    int rays = 1024;         ///< directions over the whole sphere; those above a point's horizon are traced
+    bool findInside = true;  ///< classify points inside geometry (most hits are back faces)
+};
+
+struct BakeResult {
+    std::vector<float> coefficients;  ///< [points×n²] world space, V = 0 below the geometric horizon
+    std::vector<float> ao;  ///< [points] (1/π)∫V max(0,n·ω), normalised so that an open point has exactly 1
+    std::vector<uint8_t> inside;  ///< [points] 1: most rays that hit anything hit the back of a face
+    uint64_t rays = 0;            ///< traced
+    double traceSeconds = 0;      ///< wall clock of tracing and projection
+};
+
+/// Visibility at points, by one set of world-fixed directions (spherical Fibonacci) shared by all points;
+/// blocks of neighbouring points take one direction at a time. Same bits for any number of threads.
+///   v_i = (4π/N) Σ_k V(ω_k) Y_i(ω_k)
+/// @source [IwanickiSloan2012, Sec. 3]
+BakeResult bakeVisibility(const RayCaster& caster, std::span<const SurfacePoint> points,
+                          const BakeOptions& options);
+
+/// Per-vertex points: each vertex stands for the corners of its faces. Sub-points lie inside the incident
+/// faces (inset from the vertex, so that rays do not start in the plane of an adjoining wall); the directions
+/// are dealt to the sub-points by angle, so the cost is that of one point.
+struct VertexPoints {
+    std::vector<SurfacePoint> points;  ///< sub-points, all vertices
+    std::vector<uint32_t> firstPoint;  ///< [vertices + 1]
+    std::vector<float> share;          ///< [points] of each vertex's directions; sums to 1 per vertex
+    std::vector<Vec3f> normals;        ///< [vertices] angle-weighted geometric normal
+};
+VertexPoints makeVertexPoints(const Scene& scene);
+BakeResult bakeVertexVisibility(const RayCaster& caster, const VertexPoints& vertices,
+                                const BakeOptions& options);
+
+}  // namespace prt

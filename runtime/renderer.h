@@ -1,0 +1,57 @@
+// Draws a bundle's mesh, lit through tables, into float images.
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "precompute/io/image.h"
+#include "precompute/io/scene.h"
+#include "precompute/io/surface_image.h"
+#include "precompute/io/table_file.h"
+#include "precompute/io/visibility_file.h"
+#include "runtime/gl_context.h"
+
+namespace prt {
+
+enum class Technique { Unc, Pca };
+const char* techniqueName(Technique technique);  ///< "unc", "pca"
+
+struct RenderOptions {
+    int width = 1280, height = 800;
+    bool normalMap = true;
+};
+
+struct RenderedFrame {
+    FloatImage radiance;    ///< 3 channels: albedo/π·E; background where nothing is seen
+    FloatImage irradiance;  ///< 3 channels: E; 0 where nothing is seen
+};
+
+class Renderer {
+  public:
+    /// Uploads geometry and textures; visibility (for unc) and PCA weights (for pca) are optional, domain and
+    /// size of each are taken from its grid.
+    /// @throws InputError  per-vertex count differs from the mesh, no uv1 for per-texel data, texture limits
+    /// exceeded
+    Renderer(GlContext& context, const Scene& scene, const VisibilityMap* visibility, const PcaMap* pca);
+    ~Renderer();
+
+    /// Uploads the table of a technique (already blended and rotated); replaces the previous one.
+    /// @throws InputError  kind, order or layer count does not fit the visibility or PCA data
+    void setTable(const NormalTable& table);
+    /// Background: radiance per world direction, or black when never set.
+    void setBackground(const FloatImage& latLong, double rotationRad);
+
+    /// @throws InputError  the technique's data or table was not given
+    RenderedFrame render(const Camera& camera, Technique technique, const RenderOptions& options);
+    /// The points that render() shades: same geometry, textures, normal maps and filtering.
+    SurfaceImage surface(const Camera& camera, const RenderOptions& options);
+    /// Median time of a frame, ms, glFinish and a clock, after warm-up.
+    double frameMilliseconds(const Camera& camera, Technique technique, const RenderOptions& options,
+                             int frames);
+
+  private:
+    struct State;
+    std::unique_ptr<State> state_;
+};
+
+}  // namespace prt

@@ -1,0 +1,59 @@
+# Compiler settings and the two functions every CMakeLists.txt of the project uses: prt_library and prt_test.
+
+set(CMAKE_CXX_STANDARD 20)
+set(CMAKE_CXX_STANDARD_REQUIRED ON)
+set(CMAKE_CXX_EXTENSIONS OFF)
+set(CMAKE_POSITION_INDEPENDENT_CODE ON)
+if(NOT CMAKE_BUILD_TYPE)
+  set(CMAKE_BUILD_TYPE Release)
+endif()
+
+find_program(PRT_CCACHE ccache)
+if(PRT_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${PRT_CCACHE})
+endif()
+
+add_library(prt_settings INTERFACE)
+target_compile_options(prt_settings INTERFACE -Wall -Wextra -Wshadow -Wnon-virtual-dtor)
+if(PRT_WARNINGS_AS_ERRORS)
+  target_compile_options(prt_settings INTERFACE -Werror)
+endif()
+if(PRT_SANITIZE)
+  # Eigen and the standard library are fine; recover = off turns every finding into a failed test.
+  target_compile_options(prt_settings INTERFACE -fsanitize=${PRT_SANITIZE} -fno-sanitize-recover=all
+                                                -fno-omit-frame-pointer)
+  target_link_options(prt_settings INTERFACE -fsanitize=${PRT_SANITIZE})
+endif()
+
+# prt_library(<name> SOURCES <cpp>... [DEPS <prt target>...] [LINK <private library>...])
+# Makes target prt_<name> with alias prt::<name>. Third-party libraries stay private: no header of ours shows them.
+function(prt_library name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;DEPS;LINK" ${ARGN})
+  add_library(prt_${name} STATIC ${ARG_SOURCES})
+  add_library(prt::${name} ALIAS prt_${name})
+  set_target_properties(prt_${name} PROPERTIES EXPORT_NAME ${name})
+  target_include_directories(prt_${name} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>
+                                                $<INSTALL_INTERFACE:include/prt>)
+  target_compile_features(prt_${name} PUBLIC cxx_std_20)
+  target_link_libraries(prt_${name} PRIVATE $<BUILD_INTERFACE:prt_settings> ${ARG_LINK})
+  foreach(dep ${ARG_DEPS})
+    target_link_libraries(prt_${name} PUBLIC prt_${dep})
+  endforeach()
+  set_property(GLOBAL APPEND PROPERTY PRT_LIBRARIES prt_${name})
+endfunction()
+
+# prt_test(<folder> <class> SOURCES <cpp>... [DEPS <prt target>...] [LINK <library>...])
+# One GoogleTest binary test_<folder>_<class>; its cases appear in ctest as prt.<class>.<folder>.<Suite.Case>.
+function(prt_test folder class)
+  cmake_parse_arguments(ARG "" "" "SOURCES;DEPS;LINK" ${ARGN})
+  set(target test_${folder}_${class})
+  add_executable(${target} ${ARG_SOURCES})
+  target_link_libraries(${target} PRIVATE prt_settings GTest::gmock_main ${ARG_LINK})
+  foreach(dep ${ARG_DEPS})
+    target_link_libraries(${target} PRIVATE prt_${dep})
+  endforeach()
+  target_compile_definitions(${target} PRIVATE PRT_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
+  target_precompile_headers(${target} PRIVATE <gmock/gmock.h> <gtest/gtest.h> <vector> <string> <filesystem>)
+  gtest_discover_tests(${target} TEST_PREFIX "prt.${class}.${folder}." DISCOVERY_TIMEOUT 120
+                       PROPERTIES LABELS "${class}" TIMEOUT 600)
+endfunction()
