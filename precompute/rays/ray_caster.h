@@ -20,8 +20,9 @@ struct RayHit {
 class RayCaster {
   public:
     /// Builds the acceleration structure (robust intersection).
-    /// @param positions  @param indices  3 per triangle, in range
-    /// @throws InputError  no memory
+    /// @param positions  all finite; copied (scaled by a power of two, so results do not depend on the scale)
+    /// @param indices    3 per triangle, in range
+    /// @throws InputError  a position is not finite, or no memory
     RayCaster(std::span<const Vec3f> positions, std::span<const uint32_t> indices);
     ~RayCaster();
     RayCaster(RayCaster&&) noexcept;
@@ -39,8 +40,23 @@ class RayCaster {
     RayHit firstHit(const Vec3f& origin, const Vec3f& direction) const;
 
     /// Start of rays that leave a surface point into the hemisphere of its geometric normal: moved along the
-    /// normal by an offset scaled to the scene's extent and to float precision at the position.
+    /// normal by offsetDistance(position).
     Vec3f offsetOrigin(const Vec3f& position, const Vec3f& normal) const;
+
+    /// 2^-20 of the extent (what ray-triangle tests over the whole scene can be wrong by) plus 2^-22 of the
+    /// largest coordinate (2 to 4 units in its last place: what rounding of the position and of the moved
+    /// origin can be wrong by).
+    float offsetDistance(const Vec3f& position) const;
+
+    /// The point of a triangle's plane nearest to `position`, for positions that are off by more than
+    /// rounding (interpolated by a rasteriser). Unchanged when the triangle has no area or the plane is
+    /// farther than 1e-4 extents.
+    /// @param triangle  < triangleCount()
+    Vec3f snapToPlane(const Vec3f& position, uint32_t triangle) const;
+
+    size_t triangleCount() const;
+    /// Diagonal of the bounding box of the triangles.
+    float extent() const;
 
     /// "SSE2", "AVX", "AVX2" or "AVX512": what Embree runs on here; results may differ in rare grazing rays.
     std::string instructionSet() const;
