@@ -1,0 +1,83 @@
+// prt precompute: mesh file -> bundle.
+#include <fmt/format.h>
+
+#include "precompute/math/sh.h"
+#include "precompute/visibility/precompute_job.h"
+#include "tools/command_line.h"
+#include "tools/commands.h"
+#include "tools/report.h"
+
+namespace prt::tools {
+namespace {
+
+Report toReport(const PrecomputeSettings& settings, const PrecomputeReport& result) {
+    Report validity, repairs, report;
+    for (int i = 0; i < kValidityCount; ++i)
+        validity.set(validityName(Validity(i)), uint64_t(result.validity[size_t(i)]));
+    for (const auto& [kind, count] : result.repairs) repairs.set(kind, uint64_t(count));
+    report.set("bundle", settings.bundlePath)
+        .set("mesh", settings.meshPath)
+        .set("domain", pointDomainName(settings.perVertex ? PointDomain::Vertex : PointDomain::Texel))
+        .set("order", settings.shOrder)
+        .set("triangles", uint64_t(result.triangles))
+        .set("vertices", uint64_t(result.vertices))
+        .set("points", result.points)
+        .set("rays", result.rays)
+        .set("rays_per_s", result.raysPerSecond)
+        .set("trace_seconds", result.traceSeconds)
+        .set("seconds", result.seconds)
+        .set("mean_ao", result.meanAo)
+        .set("peak_rss_bytes", uint64_t(result.peakResidentBytes))
+        .set("embree_isa", result.instructionSet)
+        .set("validity", validity)
+        .set("repairs", repairs);
+    if (!settings.perVertex && result.atlasMade) {
+        Report atlas;
+        atlas.set("charts", result.atlas.charts)
+            .set("utilisation", result.atlas.utilisation)
+            .set("texels_per_unit", result.atlas.texelsPerUnit);
+        report.set("atlas", atlas);
+    }
+    return report;
+}
+
+}  // namespace
+
+void runPrecomputeCommand(int argc, char** argv) {
+    PrecomputeSettings settings;
+    CommandLine line(
+        "prt precompute", "Bakes spherical-harmonic visibility of a static mesh into a bundle.",
+        "Meshes: .obj (+ .mtl), .ply, .off, .stl, .gltf, .glb; polygons, no normals or no UVs are fine.\n"
+        "Examples:\n"
+        "  prt precompute house.obj -o house.prt --texels 512 --order 6 --rays 1024\n"
+        "  prt precompute bunny.ply -o bunny.prt --per-vertex --order 4");
+    line.positional("MESH", settings.meshPath, "mesh file");
+    line.text("-o,--output", settings.bundlePath, "BUNDLE", "bundle directory to write, e.g. out/house.prt",
+              true);
+    line.flag("--per-vertex", settings.perVertex, "bake at vertices instead of atlas texels");
+    line.integer("--texels", settings.texels, 16, 8192, "edge of the square atlas, texels");
+    line.integer("--order", settings.shOrder, 1, kMaxBundleShOrder,
+                 "number of SH bands n (n*n coefficients)");
+    line.integer("--rays", settings.rays, 1, 1 << 20,
+                 "directions over the sphere; those above a point's horizon are traced");
+    line.real("--uv-scale", settings.load.uvScale, 1e-6, 1e9,
+              "scene units per tile of box-projected texture coordinates, where the mesh has none");
+    line.text("--normal-map", settings.load.normalMap, "IMAGE",
+              "tangent-space normal map (+Y up; PNG, JPEG, WebP) for materials that have none");
+    if (!line.parse(argc, argv)) return;
+
+    const PrecomputeReport result = runPrecompute(settings);
+    if (line.common().json != "-") {
+        fmt::print(
+            "{}: {} {} baked, {:.3g} M rays in {:.2f} s ({:.3g} Mrays/s), {:.2f} s in all; mean AO {:.3f}\n",
+            settings.bundlePath, result.points, settings.perVertex ? "vertices" : "texels",
+            double(result.rays) * 1e-6, result.traceSeconds, result.raysPerSecond * 1e-6, result.seconds,
+            result.meanAo);
+        if (!settings.perVertex && result.atlasMade)
+            fmt::print("atlas: {} charts, {:.0f} % used, {:.3g} texels per unit\n", result.atlas.charts,
+                       100 * result.atlas.utilisation, result.atlas.texelsPerUnit);
+    }
+    toReport(settings, result).write(line.common().json);
+}
+
+}  // namespace prt::tools

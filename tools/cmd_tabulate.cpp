@@ -1,0 +1,48 @@
+// prt tabulate: tables for an engine to ship.
+#include <fmt/format.h>
+
+#include "compress/jobs.h"
+#include "tools/command_line.h"
+#include "tools/commands.h"
+#include "tools/report.h"
+
+namespace prt::tools {
+
+void runTabulateCommand(int argc, char** argv) {
+    TabulateSettings settings;
+    CommandLine line(
+        "prt tabulate", "Writes tables over the normal into a bundle, one per environment.",
+        "Environments: latitude-longitude .exr or .hdr, EXR cubes, or sky:clear, sky:overcast, sky:sunset,\n"
+        "sky:uniform.\n"
+        "Example:\n  prt tabulate out/house.prt sunset.exr night.exr --kind triple-product --size 32");
+    line.positional("BUNDLE", settings.bundlePath, "bundle made by prt precompute");
+    line.positionalList("ENVIRONMENT", settings.environments, "environments");
+    line.choice("--kind", settings.kind, {"triple-product", "light-cosine"},
+                "light x cosine x component (needs prt compress), or light x cosine");
+    line.choice("--layout", settings.layout, {"cube"}, "how the sphere of normals is laid out");
+    line.integer("--size", settings.size, 1, 1024, "texels along an edge of a cube face");
+    if (!line.parse(argc, argv)) return;
+
+    const std::vector<TabulateRow> rows = runTabulate(settings);
+    Report report;
+    std::vector<Report> reportRows;
+    for (const TabulateRow& row : rows) {
+        if (line.common().json != "-")
+            fmt::print("{}: {} ({:.1f} kB, {:.3f} s)\n", row.environment, row.file, double(row.bytes) * 1e-3,
+                       row.seconds);
+        Report one;
+        one.set("environment", row.environment)
+            .set("file", row.file)
+            .set("bytes", uint64_t(row.bytes))
+            .set("seconds", row.seconds);
+        reportRows.push_back(std::move(one));
+    }
+    report.set("bundle", settings.bundlePath)
+        .set("kind", settings.kind)
+        .set("layout", settings.layout)
+        .set("size", settings.size)
+        .set("rows", reportRows);
+    report.write(line.common().json);
+}
+
+}  // namespace prt::tools

@@ -1,0 +1,135 @@
+#include "tools/relight_arguments.h"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cmath>
+#include <numbers>
+
+#include "precompute/base/error.h"
+#include "tools/command_line.h"
+
+namespace prt::tools {
+namespace {
+
+std::optional<double> parseNumber(std::string_view text) {
+    double value = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
+    return value;
+}
+
+bool endsWith(const std::string& text, std::string_view suffix) {
+    return text.size() > suffix.size() &&
+           text.compare(text.size() - suffix.size(), suffix.size(), suffix) == 0;
+}
+
+void checkImageName(const std::string& option, const std::string& file) {
+    if (!file.empty() && !endsWith(file, ".png") && !endsWith(file, ".exr"))
+        throw UsageError(option, fmt::format("'{}' is neither .png nor .exr", file), "name one of these");
+}
+
+}  // namespace
+
+EnvironmentArgument parseEnvironmentArgument(const std::string& text) {
+    EnvironmentArgument argument{text, 1};
+    const size_t colon = text.rfind(':');
+    if (colon != std::string::npos) {
+        if (const auto weight = parseNumber(std::string_view(text).substr(colon + 1))) {
+            argument = {text.substr(0, colon), *weight};
+            if (!std::isfinite(*weight) || *weight < 0)
+                throw UsageError("--env", fmt::format("weight of '{}' is not a number >= 0", text));
+        }
+    }
+    if (argument.source.empty())
+        throw UsageError("--env", "no environment is named", "for example sky:clear");
+    return argument;
+}
+
+void RelightArguments::addTo(CommandLine& line) {
+    line.positional("BUNDLE", bundlePath, "bundle made by prt precompute");
+    line.textList("--env", environmentTexts, "ENV[:WEIGHT]",
+                  "environment and its weight (1); repeat to blend; none: sky:clear");
+    line.real("--rotate", rotateDeg, -1e6, 1e6, "turn of the environments about the up axis, degrees");
+    line.choice("--technique", technique, {"unc", "pca", "reference"},
+                "visibility x light table, weights x component tables, or ray tracing");
+    line.text("-o,--output", output, "FILE", "image to write: .png (sRGB) or .exr (linear)");
+    line.text("--size", sizeText, "WIDTHxHEIGHT", "pixels");
+    line.text("--exposure", exposureText, "STOPS|auto", "brightness of .png output");
+    line.text("--eye", eyeText, "X,Y,Z", "camera position; else it is placed by the next three");
+    line.text("--target", targetText, "X,Y,Z", "point looked at; else the middle of the scene");
+    line.real("--azimuth", azimuthDeg, -1e6, 1e6,
+              "of the camera around the scene, degrees from +Z towards +X");
+    line.real("--elevation", elevationDeg, -89, 89, "of the camera above the horizon, degrees");
+    line.real("--distance", distance, 0.01, 100,
+              "of the camera, 1 = the scene's bounding sphere fills the picture");
+    line.real("--fov", fovDeg, 1, 160, "vertical field of view, degrees");
+    line.flag("--no-normal-map", noNormalMap, "shade with the mesh's own normals");
+    line.flag("--no-background", noBackground, "black where nothing is seen");
+    line.integer("--table-size", tableSize, 1, 1024, "texels along an edge of the cube tables");
+    line.flag("--compare-reference", compareReference,
+              "print the error of every technique against ray tracing");
+    line.flag("--each", each,
+              "treat every environment by itself instead of blending; {env} in file names becomes its name");
+    line.integer("--reference-rays", referenceRays, 64, 1 << 20,
+                 "directions of the reference, before refinement");
+    line.text("--reference-output", referenceOutput, "FILE",
+              "with --compare-reference: the ray-traced image");
+    line.text("--difference-output", differenceOutput, "FILE",
+              "with --compare-reference: 4 x |image - reference|");
+    line.integer("--time-frames", timeFrames, 0, 10000, "measure the median time of so many frames");
+}
+
+void RelightArguments::finish() {
+    if (environmentTexts.empty()) environmentTexts.push_back("sky:clear");
+    for (const std::string& text : environmentTexts) environments.push_back(parseEnvironmentArgument(text));
+    parseSize("--size", sizeText, width, height);
+    if (exposureText != "auto") {
+        exposureStops = parseNumber(exposureText);
+        if (!exposureStops || !(std::abs(*exposureStops) <= 64))
+            throw UsageError("--exposure",
+                             fmt::format("'{}' is neither a number of stops nor auto", exposureText));
+    }
+    checkImageName("--output", output);
+    checkImageName("--reference-output", referenceOutput);
+    checkImageName("--difference-output", differenceOutput);
+    if (output.empty() && !compareReference && timeFrames == 0)
+        throw UsageError("--output", "nothing to do", "name an image with -o, or give --compare-reference");
+    if (!compareReference && !(referenceOutput.empty() && differenceOutput.empty()))
+        throw UsageError("--reference-output", "needs --compare-reference");
+    if (each && environments.size() > 1)
+        for (const std::string& file : {output, referenceOutput, differenceOutput})
+            if (!file.empty() && file.find("{env}") == std::string::npos)
+                throw UsageError("--each", fmt::format("'{}' would be written once per environment", file),
+                                 "put {env} into the name");
+    float unused[3];
+    if (!eyeText.empty()) parseVector("--eye", eyeText, unused);
+    if (!targetText.empty()) parseVector("--target", targetText, unused);
+}
+
+Camera RelightArguments::camera(const Bounds& bounds) const {
+    Camera camera;
+    camera.verticalFovDeg = float(fovDeg);
+    camera.target = 0.5f * (bounds.low + bounds.high);
+    if (!targetText.empty()) parseVector("--target", targetText, camera.target.data());
+    if (!eyeText.empty()) {
+        parseVector("--eye", eyeText, camera.eye.data());
+    } else {
+        const double radius = 0.5 * double((bounds.high - bounds.low).norm());
+        const double halfFov = fovDeg * std::numbers::pi / 360;
+        const double range = distance * radius / std::sin(halfFov);
+        const double azimuth = azimuthDeg * std::numbers::pi / 180,
+                     elevation = elevationDeg * std::numbers::pi / 180;
+        camera.eye = camera.target + float(range) * Vec3f(float(std::sin(azimuth) * std::cos(elevation)),
+                                                          float(std::sin(elevation)),
+                                                          float(std::cos(azimuth) * std::cos(elevation)));
+    }
+    if ((camera.eye - camera.target).norm() == 0)
+        throw UsageError("--eye", "is the same point as the target", "move one of them");
+    // Looking straight up or down leaves +Y undefined as the picture's up.
+    const Vec3f forward = (camera.target - camera.eye).normalized();
+    if (std::abs(forward.y()) > 0.9999f) camera.up = Vec3f(0, 0, -1);
+    return camera;
+}
+
+}  // namespace prt::tools

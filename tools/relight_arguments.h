@@ -1,0 +1,47 @@
+// What prt relight was asked to do.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "precompute/io/scene.h"
+#include "precompute/io/surface_image.h"
+
+namespace prt::tools {
+
+class CommandLine;
+
+struct EnvironmentArgument {
+    std::string source;  ///< file or sky:NAME
+    double weight = 1;
+};
+/// Splits "file.exr:0.7"; the part behind the last colon is a weight when it is a number.
+/// @throws UsageError  empty name, weight not finite or negative
+EnvironmentArgument parseEnvironmentArgument(const std::string& text);
+
+struct RelightArguments {
+    std::string bundlePath;
+    std::vector<std::string> environmentTexts;
+    std::string technique = "unc";
+    std::string sizeText = "1280x800";
+    std::string output, referenceOutput, differenceOutput;
+    std::string exposureText = "0";
+    std::string eyeText, targetText;
+    double rotateDeg = 0, fovDeg = 40, azimuthDeg = 35, elevationDeg = 18, distance = 1;
+    int tableSize = 32, referenceRays = 4096, timeFrames = 0;
+    bool noNormalMap = false, noBackground = false, compareReference = false, each = false;
+
+    std::vector<EnvironmentArgument> environments;
+    int width = 0, height = 0;
+    std::optional<double> exposureStops;  ///< empty: chosen from the picture
+
+    void addTo(CommandLine& line);
+    /// Checks and parses the texts.
+    /// @throws UsageError
+    void finish();
+    /// From --eye and --target, or around the scene by --azimuth, --elevation and --distance.
+    Camera camera(const Bounds& bounds) const;
+};
+
+}  // namespace prt::tools
