@@ -17,8 +17,8 @@ std::vector<Vec3f> sphericalFibonacci(int count);
 std::vector<Vec3f> randomDirections(int count, uint64_t seed);
 
 /// Two unit vectors that make a right-handed frame (tangent, bitangent, normal). Continuous except at
-/// normal.z = −1.
-/// @source [Duff2017]
+/// normal.z = −1, and orthonormal to float precision everywhere.
+/// @source [Frisvad2012], made exact near that point
 struct Frame {
     Vec3f tangent, bitangent, normal;
 };

@@ -38,8 +38,9 @@ struct EnvironmentSh {
 /// @param shOrder  1..kMaxShOrder
 EnvironmentSh projectEnvironment(const LatLongView& image, int shOrder);
 
-/// The same light turned about the up axis by angleRad (see rotationAboutUp). Turning by 2πk/width equals
-/// rolling the image by k columns: the light of column x comes from column x − k afterwards.
+/// The same light turned about the up axis by angleRad (see rotationAboutUp): light at longitude λ moves to
+/// λ + angleRad. Turning by 2πk/width equals rolling the image by k columns to the left: the light of column
+/// x moves to column x − k, so that afterwards column x shows what column x + k (modulo width) showed.
 EnvironmentSh rotateEnvironmentAboutUp(const EnvironmentSh& environment, double angleRad);
 
 /// Σ_k weight_k · environment_k; all of one order.

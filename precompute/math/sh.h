@@ -5,6 +5,7 @@
 // shOrder n is the number of bands: n^2 coefficients, in the order of shIndex.
 #pragma once
 
+#include <cstddef>
 #include <functional>
 #include <span>
 #include <vector>
@@ -22,6 +23,12 @@ inline constexpr int kMaxBundleShOrder = 10;
 constexpr int shIndex(int band, int m) { return band * (band + 1) + m; }
 /// Coefficients of shOrder bands.
 constexpr int shCount(int shOrder) { return shOrder * shOrder; }
+/// The shOrder that a number of coefficients belongs to; 0 where it is not the square of 1..kMaxShOrder.
+constexpr int shOrderFromCount(size_t count) {
+    for (int n = 1; n <= kMaxShOrder; ++n)
+        if (size_t(shCount(n)) == count) return n;
+    return 0;
+}
 
 /// Evaluates all basis functions in one direction.
 /// @param shOrder    1..kMaxShOrder
