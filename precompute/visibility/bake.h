@@ -10,23 +10,35 @@
 
 namespace prt {
 
+/// Largest number of directions (their basis functions are kept in a table).
+inline constexpr int kMaxBakeRays = 262144;
+
 struct BakeOptions {
-    int shOrder = 6;         ///< 1..kMaxBundleShOrder
-    int rays = 1024;         ///< directions over the whole sphere; those above a point's horizon are traced
+    int shOrder = 6;  ///< 1..kMaxBundleShOrder
+    int rays = 1024;  ///< 1..kMaxBakeRays over the whole sphere; those above a point's horizon are traced
     bool findInside = true;  ///< classify points inside geometry (most hits are back faces)
+    /// [triangles] or empty: non-zero where both sides are a proper outside (a curtain, a leaf), so that
+    /// meeting the back does not mean to be inside
+    std::span<const uint8_t> doubleSided;
 };
 
 struct BakeResult {
     std::vector<float> coefficients;  ///< [points×n²] world space, V = 0 below the geometric horizon
     std::vector<float> ao;  ///< [points] (1/π)∫V max(0,n·ω), normalised so that an open point has exactly 1
     std::vector<uint8_t> inside;  ///< [points] 1: most rays that hit anything hit the back of a face
-    uint64_t rays = 0;            ///< traced
-    double traceSeconds = 0;      ///< wall clock of tracing and projection
+    /// More than half of the points looked inside: the winding is inverted or inconsistent, and `inside` was
+    /// cleared. A warning has been logged.
+    bool windingSuspect = false;
+    uint64_t rays = 0;        ///< occlusion rays traced
+    double traceSeconds = 0;  ///< wall clock of tracing and projection
 };
 
 /// Visibility at points, by one set of world-fixed directions (spherical Fibonacci) shared by all points;
-/// blocks of neighbouring points take one direction at a time. Same bits for any number of threads.
+/// blocks of neighbouring points take one direction at a time. Same bits for any number of threads, and for a
+/// point whatever the other points are.
 ///   v_i = (4π/N) Σ_k V(ω_k) Y_i(ω_k)
+/// @throws UsageError   an option out of range
+/// @throws Interrupted
 /// @source [IwanickiSloan2012, Sec. 3]
 BakeResult bakeVisibility(const RayCaster& caster, std::span<const SurfacePoint> points,
                           const BakeOptions& options);
@@ -34,13 +46,22 @@ BakeResult bakeVisibility(const RayCaster& caster, std::span<const SurfacePoint>
 /// Per-vertex points: each vertex stands for the corners of its faces. Sub-points lie inside the incident
 /// faces (inset from the vertex, so that rays do not start in the plane of an adjoining wall); the directions
 /// are dealt to the sub-points by angle, so the cost is that of one point.
+/// Vertices with the same position and shading normal (split only for UVs or materials) are baked once, over
+/// all their faces, so that no seam shows between them; hard edges stay apart.
 struct VertexPoints {
-    std::vector<SurfacePoint> points;  ///< sub-points, all vertices
-    std::vector<uint32_t> firstPoint;  ///< [vertices + 1]
+    std::vector<SurfacePoint> points;  ///< sub-points, all vertices; at most kMaxSubPoints per vertex
+    std::vector<uint32_t> firstPoint;  ///< [vertices + 1]; no points where sameAs is another vertex
+    std::vector<uint32_t> sameAs;      ///< [vertices] first vertex with the same position and normal
     std::vector<float> share;          ///< [points] of each vertex's directions; sums to 1 per vertex
     std::vector<Vec3f> normals;        ///< [vertices] angle-weighted geometric normal
 };
+inline constexpr int kMaxSubPoints = 32;
+
+/// @param scene  normals may be absent (then positions alone are compared); a vertex without a face of any
+/// area
+///               has no points, and bakes to zeros
 VertexPoints makeVertexPoints(const Scene& scene);
+/// As bakeVisibility, one result per vertex.
 BakeResult bakeVertexVisibility(const RayCaster& caster, const VertexPoints& vertices,
                                 const BakeOptions& options);
 
