@@ -23,9 +23,14 @@ struct ReferenceDirections {
     std::vector<std::vector<float>> radiance;
 };
 
+/// Cells are boxes in height y = sin β and longitude. One is split in four while it carries more than
+/// 4/baseCount of the flux of some environment, down to half a texel of that environment. Radiance over a
+/// cell is integrated exactly over the image (constant over each texel), so Σ radiance·solidAngle is the flux
+/// whatever the cells.
 /// @param environments  any number; all share the directions
-/// @param rotationsRad  [environments] turn about the up axis (math/sh_rotation.h)
-/// @param baseCount     cells before splitting, about
+/// @param rotationsRad  [environments] turn about the up axis: +Z turns towards +X
+/// @param baseCount     cells before splitting, about; 16..1048576
+/// @throws UsageError   baseCount out of range
 ReferenceDirections makeReferenceDirections(std::span<const Environment> environments,
                                             std::span<const double> rotationsRad, int baseCount = 4096);
 
@@ -33,9 +38,12 @@ ReferenceDirections makeReferenceDirections(std::span<const Environment> environ
 /// horizon and nothing blocks it.
 using ReferenceVisitor = std::function<void(size_t pixel, std::span<const uint8_t> visible)>;
 
+/// Positions are first moved to the plane of their triangle (they come from a rasteriser's interpolation).
 /// Irradiance of every covered pixel under every environment: E = Σ_k V_k max(0, n_s·ω_k) L_k ΔΩ_k, n_s the
 /// shading normal, V from the geometric horizon up. One ray pass for all environments; deterministic.
+/// @param surface  of the same mesh as the caster's
 /// @param visitor  may be empty
+/// @throws Interrupted
 /// @return [environments][pixels×3]; zeros where nothing is seen
 std::vector<std::vector<float>> traceReference(const RayCaster& caster, const SurfaceImage& surface,
                                                const ReferenceDirections& directions,
