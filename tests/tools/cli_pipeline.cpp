@@ -1,0 +1,179 @@
+// The pipeline as a user runs it, on small input: what comes out is right, reproducible and never stale
+// unnoticed.
+#include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "precompute/io/environment_file.h"
+#include "precompute/io/image.h"
+#include "tests/tools/prt_process.h"
+
+namespace prt::test {
+namespace {
+namespace fs = std::filesystem;
+
+std::string slurp(const fs::path& path) {
+    std::ostringstream text;
+    text << std::ifstream(path, std::ios::binary).rdbuf();
+    return text.str();
+}
+
+nlohmann::json runJson(const Folder& folder, std::vector<std::string> arguments) {
+    arguments.insert(arguments.end(), {"--json", "-"});
+    const ProcessResult result = runPrt(folder, arguments);
+    EXPECT_EQ(result.exitCode, 0) << result.err;
+    return nlohmann::json::parse(result.out, nullptr, false);
+}
+
+/// The open box baked per texel and compressed with all components.
+class Pipeline : public testing::Test {
+  protected:
+    void SetUp() override {
+        folder_.write("box.obj", openBoxObj());
+        ASSERT_EQ(run({"precompute", "box.obj", "-o", "box.prt", "--texels", "96", "--rays", "512", "--order",
+                       "4"}),
+                  0);
+        ASSERT_EQ(run({"compress", "box.prt", "--components", "16"}), 0);
+    }
+    int run(std::vector<std::string> arguments) {
+        arguments.push_back("--quiet");
+        const ProcessResult result = runPrt(folder_, arguments);
+        EXPECT_EQ(result.exitCode, 0) << result.err;
+        return result.exitCode;
+    }
+    /// Linear pixels of one rendering.
+    FloatImage relight(std::vector<std::string> options) {
+        options.insert(options.begin(),
+                       {"relight", "box.prt", "--size", "96x60", "--no-background", "-o", "frame.exr"});
+        run(options);
+        return loadExr("frame.exr");
+    }
+    FloatImage loadExr(const std::string& name) {
+        // Environments must be 2:1; pictures need not, so read by the picture's own size.
+        return readExrImage((folder_ / name).string());
+    }
+    Folder folder_;
+};
+
+double maxDifference(const FloatImage& a, const FloatImage& b) {
+    EXPECT_EQ(a.pixels.size(), b.pixels.size());
+    double largest = 0;
+    for (size_t i = 0; i < a.pixels.size(); ++i)
+        largest = std::max(largest, std::abs(double(a.pixels[i]) - double(b.pixels[i])));
+    return largest;
+}
+
+double maxValue(const FloatImage& a) { return *std::max_element(a.pixels.begin(), a.pixels.end()); }
+
+TEST_F(Pipeline, AllComponentsEqualUncompressed) {
+    const FloatImage unc = relight({"--technique", "unc"}), pca = relight({"--technique", "pca"});
+    EXPECT_GT(maxValue(unc), 0.05);
+    EXPECT_LE(maxDifference(unc, pca), 1e-3 * maxValue(unc));
+}
+
+TEST_F(Pipeline, ErrorIsNearTheFloor) {
+    const auto json = runJson(
+        folder_, {"relight", "box.prt", "--env", "sky:overcast", "--compare-reference", "--size", "96x60"});
+    const double floor = json.at("floor_rmse");
+    EXPECT_GT(floor, 0);
+    for (const auto& row : json.at("rows")) {
+        EXPECT_LE(double(row.at("relative_rmse")), floor + 0.03) << row;
+        EXPECT_GE(double(row.at("psnr_db")), 20);
+    }
+    EXPECT_EQ(json.at("rows").size(), 2u);
+}
+
+TEST_F(Pipeline, BlendingIsLinear) {
+    for (const char* technique : {"unc", "pca"}) {
+        const FloatImage a = relight({"--technique", technique, "--env", "sky:clear"});
+        const FloatImage b = relight({"--technique", technique, "--env", "sky:overcast"});
+        const FloatImage blend =
+            relight({"--technique", technique, "--env", "sky:clear:0.7", "--env", "sky:overcast:0.3"});
+        double worst = 0;
+        for (size_t i = 0; i < a.pixels.size(); ++i)
+            worst = std::max(worst, std::abs(0.7 * double(a.pixels[i]) + 0.3 * double(b.pixels[i]) -
+                                             double(blend.pixels[i])));
+        EXPECT_LE(worst, 1e-3 * maxValue(blend)) << technique;
+    }
+}
+
+/// Turning the light by whole columns equals relighting under the rolled image.
+TEST_F(Pipeline, RotationEqualsARolledImage) {
+    const Environment sky = loadEnvironment("sky:sunset");
+    const int columns = 77, width = sky.image.width;
+    FloatImage rolled = sky.image;
+    // math/environment.h: turning by +2πk/width moves the light of column x to column x − k.
+    for (int y = 0; y < sky.image.height; ++y)
+        for (int x = 0; x < width; ++x)
+            for (int c = 0; c < 3; ++c)
+                rolled.at((x - columns + width) % width, y)[c] = sky.image.at(x, y)[c];
+    writeExrImage((folder_ / "sky.exr").string(), sky.image);
+    writeExrImage((folder_ / "rolled.exr").string(), rolled);
+    const std::string degrees = std::to_string(360.0 * columns / width);
+    for (const char* technique : {"unc", "pca", "reference"}) {
+        const FloatImage turned =
+            relight({"--technique", technique, "--env", "sky.exr", "--rotate", degrees});
+        const FloatImage expected = relight({"--technique", technique, "--env", "rolled.exr"});
+        const FloatImage unturned = relight({"--technique", technique, "--env", "sky.exr"});
+        EXPECT_LE(maxDifference(turned, expected), 1e-3 * maxValue(expected)) << technique;
+        EXPECT_GE(maxDifference(turned, unturned), 0.05 * maxValue(expected)) << technique;
+    }
+}
+
+TEST_F(Pipeline, BackgroundIsTheSameInEveryTechnique) {
+    run({"relight", "box.prt", "--size", "96x60", "--distance", "2", "--rotate", "50", "--env", "sky:sunset",
+         "-o", "a.exr"});
+    run({"relight", "box.prt", "--size", "96x60", "--distance", "2", "--rotate", "50", "--env", "sky:sunset",
+         "-o", "b.exr", "--technique", "reference"});
+    const FloatImage a = loadExr("a.exr"), b = loadExr("b.exr");
+    for (int x = 0; x < 96; ++x)
+        for (int c = 0; c < 3; ++c)
+            EXPECT_NEAR(a.at(x, 0)[c], b.at(x, 0)[c], 0.02f + 0.02f * b.at(x, 0)[c]) << x;
+}
+
+TEST_F(Pipeline, StoredTablesGiveThePictureOfBuiltOnes) {
+    const FloatImage built = relight({"--technique", "pca", "--env", "sky:clear"});
+    run({"tabulate", "box.prt", "sky:clear", "sky:sunset", "--kind", "triple-product"});
+    run({"tabulate", "box.prt", "sky:clear", "--kind", "light-cosine"});
+    const auto json = runJson(folder_, {"relight", "box.prt", "--technique", "pca", "--env", "sky:clear",
+                                        "--size", "96x60", "--no-background", "-o", "stored.exr"});
+    EXPECT_EQ(json.at("tables"), "bundle");
+    EXPECT_LE(maxDifference(built, loadExr("stored.exr")), 1e-5 * maxValue(built));
+}
+
+TEST_F(Pipeline, StaleFilesAreNamedWithTheirCommand) {
+    run({"tabulate", "box.prt", "sky:clear", "--kind", "triple-product"});
+    ASSERT_EQ(
+        run({"precompute", "box.obj", "-o", "box.prt", "--texels", "96", "--rays", "256", "--order", "4"}),
+        0);
+    const auto info = runJson(folder_, {"info", "box.prt"});
+    int stale = 0;
+    for (const auto& file : info.at("files")) stale += bool(file.at("stale"));
+    EXPECT_EQ(stale, 2) << info.dump(2);  // pca.exr, and the table made from it
+    const ProcessResult result = runPrt(folder_, {"relight", "box.prt", "--technique", "pca", "-o", "a.png"});
+    EXPECT_EQ(result.exitCode, 3);
+    EXPECT_NE(result.err.find("prt compress"), std::string::npos) << result.err;
+    ASSERT_EQ(run({"compress", "box.prt", "--components", "16"}), 0);
+    EXPECT_EQ(
+        runPrt(folder_, {"relight", "box.prt", "--technique", "pca", "-o", "a.png", "--quiet"}).exitCode, 0);
+}
+
+TEST_F(Pipeline, ThreadsDoNotChangeABit) {
+    for (const char* threads : {"1", "2"})
+        run({"precompute", "box.obj", "-o", std::string("threads") + threads + ".prt", "--texels", "96",
+             "--rays", "300", "--order", "5", "--threads", threads});
+    EXPECT_EQ(slurp(folder_ / "threads1.prt/visibility.exr"), slurp(folder_ / "threads2.prt/visibility.exr"));
+    EXPECT_EQ(slurp(folder_ / "threads1.prt/mesh.glb"), slurp(folder_ / "threads2.prt/mesh.glb"));
+}
+
+TEST_F(Pipeline, PerVertexWorksToo) {
+    run({"precompute", "box.obj", "-o", "v.prt", "--per-vertex", "--order", "4", "--rays", "256"});
+    run({"compress", "v.prt", "--components", "4"});
+    const auto json = runJson(folder_, {"relight", "v.prt", "--compare-reference", "--size", "96x60"});
+    EXPECT_EQ(json.at("rows").size(), 2u);
+    for (const auto& row : json.at("rows")) EXPECT_LT(double(row.at("relative_rmse")), 0.5);
+}
+
+}  // namespace
+}  // namespace prt::test
