@@ -1,0 +1,239 @@
+// Stage 2 as a whole: reads a bundle, compresses its visibility [IwanickiSloan2012, Sec. 4] or tabulates
+// environments for it (Sec. 3.2), and writes the results back in one transaction.
+#include "compress/jobs.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "compress/pca.h"
+#include "compress/tables/normal_tables.h"
+#include "precompute/base/error.h"
+#include "precompute/base/log.h"
+#include "precompute/io/bundle.h"
+#include "precompute/io/environment_file.h"
+#include "precompute/io/table_file.h"
+#include "precompute/io/visibility_file.h"
+#include "precompute/math/sh.h"
+
+namespace prt {
+namespace {
+
+constexpr const char* kVisibility = "visibility.exr";
+constexpr const char* kPca = "pca.exr";
+constexpr int kMaxTableSize = 1024;
+
+std::string compressCommand(const std::string& bundle, int components) {
+    return fmt::format("prt compress {} --components {}", bundle, components);
+}
+
+std::string hashOf(const Bundle& bundle, const std::string& name) { return bundle.find(name)->xxh3; }
+
+size_t sizeOf(const std::filesystem::path& path) { return size_t(std::filesystem::file_size(path)); }
+
+void checkComponents(int components, int shOrder) {
+    if (components < 1)
+        throw UsageError("--components", fmt::format("{} is not a number of vectors", components),
+                         fmt::format("use 1 to {}", shCount(shOrder)));
+    if (components > shCount(shOrder))
+        throw UsageError(
+            "--components",
+            fmt::format("{} is above the {} coefficients of order {}", components, shCount(shOrder), shOrder),
+            fmt::format("use at most {}", shCount(shOrder)));
+}
+
+PcaMap makePcaMap(const VisibilityMap& visibility, const PcaResult& pca, std::vector<float> weights) {
+    PcaMap map;
+    map.grid = visibility.grid;
+    map.shOrder = visibility.shOrder;
+    map.components = pca.components;
+    map.mean = pca.mean;
+    map.basis = pca.basis;
+    map.variance = pca.variance;
+    map.weights = std::move(weights);
+    // How the visibility was projected stays true of its compressed form.
+    map.attributes = visibility.attributes;
+    map.attributes["compression"] = "pca";
+    map.attributes["explainedVariance"] = fmt::format("{:.9g}", pca.explainedVariance);
+    return map;
+}
+
+void checkTabulateSettings(const TabulateSettings& settings) {
+    if (settings.kind != "triple-product" && settings.kind != "light-cosine")
+        throw UsageError("--kind", fmt::format("there is no kind of table called '{}'", settings.kind),
+                         "use light-cosine or triple-product");
+    if (settings.layout != "cube")
+        throw UsageError("--layout", fmt::format("there is no layout called '{}'", settings.layout),
+                         "use cube");
+    if (settings.size < 1 || settings.size > kMaxTableSize)
+        throw UsageError("--size", fmt::format("{} is out of range", settings.size),
+                         fmt::format("use 1 to {}", kMaxTableSize));
+    if (settings.environments.empty())
+        throw UsageError("environments", "none is given",
+                         "name one or more .exr or .hdr files, or sky:clear");
+}
+
+// What tables are made for: the visibility alone, or its compressed form.
+struct TableTarget {
+    int shOrder = 0;
+    std::vector<float> mean, basis;
+    std::map<std::string, std::string> madeFrom;
+};
+
+TableTarget tableTarget(const Bundle& bundle, const TabulateSettings& settings) {
+    TableTarget target;
+    if (settings.kind == "light-cosine") {
+        // Only the order matters, and readers compare it: baking again with more rays leaves these current.
+        bundle.require(kVisibility, "prt precompute");
+        target.shOrder = readVisibilityFile(bundle.pathOf(kVisibility).string()).shOrder;
+        return target;
+    }
+    bundle.require(kPca, fmt::format("prt compress {}", settings.bundlePath));
+    PcaMap pca = readPcaFile(bundle.pathOf(kPca).string());
+    target.shOrder = pca.shOrder;
+    target.mean = std::move(pca.mean);
+    target.basis = std::move(pca.basis);
+    target.madeFrom = {{kPca, hashOf(bundle, kPca)}};
+    return target;
+}
+
+NormalTable makeTable(const Environment& environment, const TableTarget& target, int size) {
+    const EnvironmentSh light =
+        projectEnvironment(environment.view(), tableEnvironmentShOrder(target.shOrder));
+    NormalTable table;
+    table.size = size;
+    table.shOrder = target.shOrder;
+    table.kind = TableKind::LightCosine;
+    table.layers = shCount(target.shOrder);
+    table.values = buildLightCosineTable(light, target.shOrder, size);
+    table.attributes = {{"environmentName", environment.name},
+                        {"environmentHash", environment.contentHash},
+                        {"cosineBands", std::to_string(kTableCosineBands)},
+                        {"shOrder", std::to_string(target.shOrder)}};
+    if (!target.mean.empty()) {
+        const int components = int(target.basis.size() / target.mean.size());
+        table.kind = TableKind::TripleProduct;
+        table.layers = components + 1;
+        table.values = buildTripleProductTable(table.values, target.shOrder, size, target.mean, target.basis);
+        table.attributes["components"] = std::to_string(components);
+        table.attributes["pcaHash"] = target.madeFrom.at(kPca);
+    }
+    return table;
+}
+
+// The section lists every table of the bundle: those of earlier runs stay.
+std::string tabulateSection(const Bundle& bundle, const TabulateSettings& settings, const TableTarget& target,
+                            const std::vector<TabulateRow>& rows) {
+    nlohmann::json section = nlohmann::json::parse(bundle.section("tabulate"), nullptr, false);
+    if (!section.is_object()) section = nlohmann::json::object();
+    for (const TabulateRow& row : rows)
+        section["tables"][row.file] = {{"environment", row.environment},
+                                       {"kind", settings.kind},
+                                       {"layout", settings.layout},
+                                       {"size", settings.size},
+                                       {"sh_order", target.shOrder},
+                                       {"cosine_bands", kTableCosineBands},
+                                       {"bytes", row.bytes}};
+    return section.dump();
+}
+
+}  // namespace
+
+CompressReport runCompress(const CompressSettings& settings) {
+    const Stopwatch watch;
+    const Bundle bundle = Bundle::open(settings.bundlePath);
+    bundle.require(kVisibility, "prt precompute");
+    VisibilityMap visibility = readVisibilityFile(bundle.pathOf(kVisibility).string());
+    checkComponents(settings.components, visibility.shOrder);
+
+    const int dimension = shCount(visibility.shOrder);
+    std::vector<uint8_t> valid(visibility.validity.size());
+    std::transform(visibility.validity.begin(), visibility.validity.end(), valid.begin(),
+                   [](Validity validity) { return uint8_t(validity == Validity::Valid); });
+    const PcaResult pca = computePca(visibility.coefficients, valid, dimension, settings.components);
+    std::vector<float> weights = projectPca(pca, visibility.coefficients, dimension);
+    const PcaError error = pcaError(pca, visibility.coefficients, weights, valid, dimension);
+    for (size_t i = 0; i < visibility.validity.size(); ++i)
+        if (visibility.validity[i] == Validity::Empty)
+            std::fill_n(weights.begin() + ptrdiff_t(i) * pca.components, pca.components, 0.0f);
+
+    CompressReport report;
+    report.components = pca.components;
+    report.points = size_t(std::count(valid.begin(), valid.end(), uint8_t(1)));
+    report.explainedVariance = pca.explainedVariance;
+    report.relativeRmse = error.relativeRmse;
+    report.rmse = error.rmse;
+
+    throwIfInterrupted();
+    BundleTransaction transaction(settings.bundlePath, false);
+    const std::filesystem::path staged =
+        transaction.stage(kPca, {{kVisibility, hashOf(bundle, kVisibility)}},
+                          compressCommand(settings.bundlePath, settings.components));
+    writePcaFile(staged.string(), makePcaMap(visibility, pca, std::move(weights)));
+    report.bytes = sizeOf(staged);
+    report.seconds = watch.seconds();
+    const nlohmann::json section = {{"settings", {{"components", settings.components}}},
+                                    {"statistics",
+                                     {{"points", report.points},
+                                      {"explained_variance", report.explainedVariance},
+                                      {"relative_rmse", report.relativeRmse},
+                                      {"rmse", report.rmse},
+                                      {"variance", pca.variance},
+                                      {"total_variance", pca.totalVariance},
+                                      {"bytes", report.bytes},
+                                      {"seconds", report.seconds}}}};
+    transaction.setSection("compress", section.dump());
+    transaction.commit();
+    report.seconds = watch.seconds();
+    return report;
+}
+
+std::vector<TabulateRow> runTabulate(const TabulateSettings& settings) {
+    checkTabulateSettings(settings);
+    const Bundle bundle = Bundle::open(settings.bundlePath);
+    const TableTarget target = tableTarget(bundle, settings);
+
+    BundleTransaction transaction(settings.bundlePath, false);
+    std::vector<TabulateRow> rows;
+    std::map<std::string, std::string> sources;  // of each file: the argument it is made from
+    Progress progress("tabulating", settings.environments.size(), "environments");
+    for (const std::string& source : settings.environments) {
+        const Stopwatch watch;
+        const Environment environment = loadEnvironment(source);
+        TabulateRow row;
+        row.environment = environment.name;
+        row.file = tableFileName(environment.name, settings.kind, settings.layout);
+        const auto [other, isNew] = sources.emplace(row.file, source);
+        if (!isNew)
+            throw UsageError(source,
+                             fmt::format("its table would have the name of that of {}", other->second),
+                             "give each environment once, and files of different names");
+        const NormalTable table = makeTable(environment, target, settings.size);
+        const std::filesystem::path staged = transaction.stage(
+            row.file, target.madeFrom,
+            fmt::format("prt tabulate {} {} --kind {} --layout {} --size {}", settings.bundlePath, source,
+                        settings.kind, settings.layout, settings.size));
+        writeTableFile(staged.string(), table);
+        row.bytes = sizeOf(staged);
+        row.seconds = watch.seconds();
+        rows.push_back(row);
+        progress.advance(1);
+    }
+    transaction.setSection("tabulate", tabulateSection(bundle, settings, target, rows));
+    transaction.commit();
+    return rows;
+}
+
+std::string tableFileName(const std::string& environmentName, const std::string& kind,
+                          const std::string& layout) {
+    std::string name = environmentName;
+    for (char& c : name)
+        if (!std::isalnum(static_cast<unsigned char>(c)) && c != '_' && c != '-') c = '_';
+    return fmt::format("tables/{}.{}.{}.exr", name, kind, layout);
+}
+
+}  // namespace prt
