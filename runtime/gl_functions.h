@@ -1,0 +1,93 @@
+// The OpenGL 4.5 functions that the runtime calls, filled through whatever resolves names for the context at
+// hand (OSMesa's here). Internal: no other header shows OpenGL types.
+#pragma once
+
+// osmesa.h and others bring gl.h, whose version macros would keep the prototypes away.
+#undef GL_VERSION_1_0
+#undef GL_VERSION_1_1
+#undef GL_VERSION_1_2
+#undef GL_VERSION_1_3
+#include <GL/glcorearb.h>
+
+// X(type in glcorearb.h, name without "gl")
+#define PRT_GL_FUNCTIONS(X)                                              \
+    X(PFNGLATTACHSHADERPROC, AttachShader)                               \
+    X(PFNGLBINDFRAMEBUFFERPROC, BindFramebuffer)                         \
+    X(PFNGLBINDSAMPLERPROC, BindSampler)                                 \
+    X(PFNGLBINDTEXTUREUNITPROC, BindTextureUnit)                         \
+    X(PFNGLBINDVERTEXARRAYPROC, BindVertexArray)                         \
+    X(PFNGLCHECKNAMEDFRAMEBUFFERSTATUSPROC, CheckNamedFramebufferStatus) \
+    X(PFNGLCLEARNAMEDFRAMEBUFFERFVPROC, ClearNamedFramebufferfv)         \
+    X(PFNGLCLEARNAMEDFRAMEBUFFERUIVPROC, ClearNamedFramebufferuiv)       \
+    X(PFNGLCLIPCONTROLPROC, ClipControl)                                 \
+    X(PFNGLCOMPILESHADERPROC, CompileShader)                             \
+    X(PFNGLCREATEBUFFERSPROC, CreateBuffers)                             \
+    X(PFNGLCREATEFRAMEBUFFERSPROC, CreateFramebuffers)                   \
+    X(PFNGLCREATEPROGRAMPROC, CreateProgram)                             \
+    X(PFNGLCREATESAMPLERSPROC, CreateSamplers)                           \
+    X(PFNGLCREATESHADERPROC, CreateShader)                               \
+    X(PFNGLCREATETEXTURESPROC, CreateTextures)                           \
+    X(PFNGLCREATEVERTEXARRAYSPROC, CreateVertexArrays)                   \
+    X(PFNGLDEBUGMESSAGECALLBACKPROC, DebugMessageCallback)               \
+    X(PFNGLDELETEBUFFERSPROC, DeleteBuffers)                             \
+    X(PFNGLDELETEFRAMEBUFFERSPROC, DeleteFramebuffers)                   \
+    X(PFNGLDELETEPROGRAMPROC, DeleteProgram)                             \
+    X(PFNGLDELETESAMPLERSPROC, DeleteSamplers)                           \
+    X(PFNGLDELETESHADERPROC, DeleteShader)                               \
+    X(PFNGLDELETETEXTURESPROC, DeleteTextures)                           \
+    X(PFNGLDELETEVERTEXARRAYSPROC, DeleteVertexArrays)                   \
+    X(PFNGLDEPTHFUNCPROC, DepthFunc)                                     \
+    X(PFNGLDEPTHMASKPROC, DepthMask)                                     \
+    X(PFNGLDISABLEPROC, Disable)                                         \
+    X(PFNGLDRAWARRAYSPROC, DrawArrays)                                   \
+    X(PFNGLENABLEPROC, Enable)                                           \
+    X(PFNGLFINISHPROC, Finish)                                           \
+    X(PFNGLGENERATETEXTUREMIPMAPPROC, GenerateTextureMipmap)             \
+    X(PFNGLGETERRORPROC, GetError)                                       \
+    X(PFNGLGETFLOATVPROC, GetFloatv)                                     \
+    X(PFNGLGETINTEGERVPROC, GetIntegerv)                                 \
+    X(PFNGLGETPROGRAMINFOLOGPROC, GetProgramInfoLog)                     \
+    X(PFNGLGETPROGRAMIVPROC, GetProgramiv)                               \
+    X(PFNGLGETSHADERINFOLOGPROC, GetShaderInfoLog)                       \
+    X(PFNGLGETSHADERIVPROC, GetShaderiv)                                 \
+    X(PFNGLGETSTRINGPROC, GetString)                                     \
+    X(PFNGLGETSTRINGIPROC, GetStringi)                                   \
+    X(PFNGLGETTEXTUREIMAGEPROC, GetTextureImage)                         \
+    X(PFNGLGETUNIFORMLOCATIONPROC, GetUniformLocation)                   \
+    X(PFNGLLINKPROGRAMPROC, LinkProgram)                                 \
+    X(PFNGLNAMEDBUFFERSTORAGEPROC, NamedBufferStorage)                   \
+    X(PFNGLNAMEDFRAMEBUFFERDRAWBUFFERSPROC, NamedFramebufferDrawBuffers) \
+    X(PFNGLNAMEDFRAMEBUFFERTEXTUREPROC, NamedFramebufferTexture)         \
+    X(PFNGLPROGRAMUNIFORM1FPROC, ProgramUniform1f)                       \
+    X(PFNGLPROGRAMUNIFORM1IPROC, ProgramUniform1i)                       \
+    X(PFNGLPROGRAMUNIFORM2IPROC, ProgramUniform2i)                       \
+    X(PFNGLPROGRAMUNIFORM3FVPROC, ProgramUniform3fv)                     \
+    X(PFNGLPROGRAMUNIFORMMATRIX4FVPROC, ProgramUniformMatrix4fv)         \
+    X(PFNGLSAMPLERPARAMETERFPROC, SamplerParameterf)                     \
+    X(PFNGLSAMPLERPARAMETERIPROC, SamplerParameteri)                     \
+    X(PFNGLSHADERSOURCEPROC, ShaderSource)                               \
+    X(PFNGLTEXTUREBUFFERPROC, TextureBuffer)                             \
+    X(PFNGLTEXTUREPARAMETERIPROC, TextureParameteri)                     \
+    X(PFNGLTEXTURESTORAGE2DPROC, TextureStorage2D)                       \
+    X(PFNGLTEXTURESTORAGE3DPROC, TextureStorage3D)                       \
+    X(PFNGLTEXTURESUBIMAGE2DPROC, TextureSubImage2D)                     \
+    X(PFNGLTEXTURESUBIMAGE3DPROC, TextureSubImage3D)                     \
+    X(PFNGLUSEPROGRAMPROC, UseProgram)                                   \
+    X(PFNGLVIEWPORTPROC, Viewport)
+
+namespace prt {
+
+/// One member per function: `gl.DrawArrays(…)`.
+struct GlFunctions {
+#define PRT_GL_MEMBER(type, name) type name = nullptr;
+    PRT_GL_FUNCTIONS(PRT_GL_MEMBER)
+#undef PRT_GL_MEMBER
+};
+
+using GlProc = void (*)();
+/// Fills the table.
+/// @param getProc  resolves "glDrawArrays" and the like; null for a name it does not know
+/// @throws InputError  a name was not resolved
+GlFunctions loadGlFunctions(GlProc (*getProc)(const char* name));
+
+}  // namespace prt

@@ -1,0 +1,337 @@
+// Sources: [IwanickiSloan2012, Sec. 3] for the two techniques. Deferred: one pass finds what is seen, the
+// second lights each pixel once, so that surface() gives exactly the points that render() shades.
+#include "runtime/renderer.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <vector>
+
+#include "precompute/base/check.h"
+#include "precompute/base/error.h"
+#include "precompute/base/log.h"
+#include "precompute/base/parallel.h"
+#include "precompute/math/sh.h"
+#include "runtime/camera_frame.h"
+#include "runtime/coefficient_images.h"
+#include "runtime/gl_objects.h"
+#include "runtime/scene_images.h"
+
+namespace prt {
+namespace {
+
+// Everything drawn for one image size.
+struct Targets {
+    int width = 0, height = 0;
+    GlObject place, normal, albedo, triangle, depth, radiance, irradiance;
+    GlObject surfaceFrame, lightFrame;
+
+    Targets(const GlContext& context, int w, int h) : width(w), height(h) {
+        const GlFunctions& gl = context.gl();
+        for (GlObject* image : {&place, &normal, &albedo, &radiance, &irradiance})
+            *image = makeImage(gl, GL_RGBA32F, w, h);
+        triangle = makeImage(gl, GL_R32UI, w, h);
+        depth = makeImage(gl, GL_DEPTH_COMPONENT32F, w, h);
+        context.check("making the image");
+        surfaceFrame = makeFramebufferOver(gl, {place.name(), normal.name(), albedo.name(), triangle.name()},
+                                           depth.name());
+        lightFrame = makeFramebufferOver(gl, {radiance.name(), irradiance.name()}, depth.name());
+    }
+};
+
+/// What a technique needs besides the surface.
+struct TechniqueData {
+    CoefficientImage coefficients;
+    TableImage table;
+    int shOrder = 0, perPoint = 0;
+    GlProgram program;
+};
+
+std::vector<float> readImage(const GlFunctions& gl, const GlObject& image, size_t pixels) {
+    std::vector<float> values(pixels * 4);
+    gl.GetTextureImage(image.name(), 0, GL_RGBA, GL_FLOAT, GLsizei(values.size() * sizeof(float)),
+                       values.data());
+    return values;
+}
+
+FloatImage readRgb(const GlFunctions& gl, const GlObject& image, int width, int height) {
+    const size_t pixels = size_t(width) * size_t(height);
+    const std::vector<float> rgba = readImage(gl, image, pixels);
+    FloatImage result{width, height, 3, std::vector<float>(pixels * 3)};
+    for (size_t i = 0; i < pixels; ++i) std::copy_n(&rgba[i * 4], 3, &result.pixels[i * 3]);
+    return result;
+}
+
+void checkGrid(const PointGrid& grid, const Scene& scene, const char* what) {
+    if (grid.domain == PointDomain::Vertex && grid.count != scene.vertexCount())
+        throw InputError(what, fmt::format("holds {} vertices, the mesh {}", grid.count, scene.vertexCount()),
+                         "both must come from one run of prt precompute");
+    if (grid.domain == PointDomain::Texel && scene.uv1.empty())
+        throw InputError(what, "is per texel, but the mesh has no atlas coordinates (TEXCOORD_1)",
+                         "both must come from one run of prt precompute");
+}
+
+Vec3f fromRgba(const float* rgba) { return {rgba[0], rgba[1], rgba[2]}; }
+
+}  // namespace
+
+const char* techniqueName(Technique technique) { return technique == Technique::Unc ? "unc" : "pca"; }
+
+struct Renderer::State {
+    State(GlContext& glContext, const Scene& source)
+        : context(glContext), gl(glContext.gl()), scene(glContext, source), bounds(sceneBounds(source)) {
+        geometry.positions = source.positions;
+        geometry.indices = source.indices;
+    }
+
+    void addTechnique(Technique technique, const PointGrid& grid, int shOrder, int perPoint,
+                      std::span<const float> values);
+    CameraFrame begin(const Camera& camera, const RenderOptions& options);
+    void drawSurface(const CameraFrame& camera, const RenderOptions& options);
+    void drawLight(const TechniqueData& data);
+    void drawBackground(const CameraFrame& camera);
+    void drawFrame(const CameraFrame& camera, const TechniqueData& data, const RenderOptions& options);
+    const TechniqueData& ready(Technique technique) const;
+
+    GlContext& context;
+    const GlFunctions& gl;
+    SceneImages scene;
+    Bounds bounds;
+    Scene geometry;  // positions and indices, for surface()
+    std::map<Technique, TechniqueData> techniques;
+    GlProgram backgroundProgram;
+    GlObject background;
+    float backgroundRotationRad = 0;
+    GlObject vertexArray;
+    std::unique_ptr<Targets> targets;
+};
+
+void Renderer::State::addTechnique(Technique technique, const PointGrid& grid, int shOrder, int perPoint,
+                                   std::span<const float> values) {
+    const bool pca = technique == Technique::Pca;
+    TechniqueData& data = techniques[technique];
+    data.coefficients =
+        uploadCoefficients(context, grid, perPoint, values, pca ? "PCA weights" : "visibility");
+    data.shOrder = shOrder;
+    data.perPoint = perPoint;
+    std::string defines;
+    if (grid.domain == PointDomain::Vertex) defines += "#define PER_VERTEX\n";
+    if (pca) defines += "#define WITH_MEAN\n";
+    data.program = GlProgram(gl, "screen.vert", "light.frag", defines);
+}
+
+CameraFrame Renderer::State::begin(const Camera& camera, const RenderOptions& options) {
+    context.makeCurrent();
+    const GLint edge = glInteger(gl, GL_MAX_TEXTURE_SIZE);
+    const int width = options.width, height = options.height;
+    if (width < 1 || height < 1 || width > edge || height > edge)
+        throw InputError("image",
+                         fmt::format("size {}x{} is outside 1x1 to {}x{}", width, height, edge, edge),
+                         "choose another size");
+    const CameraFrame frame = makeCameraFrame(camera, width, height, bounds);
+    if (!targets || targets->width != width || targets->height != height) {
+        targets.reset();
+        targets = std::make_unique<Targets>(context, width, height);
+    }
+    return frame;
+}
+
+void Renderer::State::drawSurface(const CameraFrame& camera, const RenderOptions& options) {
+    const GLuint frame = targets->surfaceFrame.name();
+    const GLuint nothing[4] = {kNoTriangle, 0, 0, 0};
+    const GLfloat farthest = 0;
+    gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, frame);
+    gl.Viewport(0, 0, targets->width, targets->height);
+    gl.ClipControl(GL_UPPER_LEFT, GL_ZERO_TO_ONE);
+    gl.Enable(GL_DEPTH_TEST);
+    gl.DepthMask(GL_TRUE);
+    gl.ClearNamedFramebufferuiv(frame, GL_COLOR, 3, nothing);
+    gl.ClearNamedFramebufferfv(frame, GL_DEPTH, 0, &farthest);
+    gl.DepthFunc(GL_GREATER);
+    scene.draw(camera, options.normalMap);
+}
+
+// Over the pixels whose depth is greater than that of nothing.
+void Renderer::State::drawLight(const TechniqueData& data) {
+    gl.DepthFunc(GL_LESS);
+    const GlProgram& program = data.program;
+    program.use();
+    program.set("layers", data.table.layers);
+    program.set("tableSize", data.table.size);
+    program.set("gridSize", data.coefficients.grid.width, data.coefficients.grid.height);
+    const GLuint images[] = {
+        targets->place.name(),    targets->normal.name(),           targets->albedo.name(),
+        targets->triangle.name(), data.coefficients.texture.name(), data.table.texture.name(),
+        scene.indices()};
+    GLuint unit = 0;
+    for (const GLuint image : images) gl.BindTextureUnit(unit++, image);
+    gl.DrawArrays(GL_TRIANGLES, 0, 3);
+}
+
+void Renderer::State::drawBackground(const CameraFrame& camera) {
+    gl.DepthFunc(GL_EQUAL);
+    backgroundProgram.use();
+    backgroundProgram.set("rayCorner", Vec3f(camera.rayCorner.cast<float>()));
+    backgroundProgram.set("rayPerPixelX", Vec3f(camera.rayPerPixelX.cast<float>()));
+    backgroundProgram.set("rayPerPixelY", Vec3f(camera.rayPerPixelY.cast<float>()));
+    backgroundProgram.set("rotationRad", backgroundRotationRad);
+    gl.BindTextureUnit(0, background.name());
+    gl.DrawArrays(GL_TRIANGLES, 0, 3);
+}
+
+void Renderer::State::drawFrame(const CameraFrame& camera, const TechniqueData& data,
+                                const RenderOptions& options) {
+    drawSurface(camera, options);
+    const GLuint frame = targets->lightFrame.name();
+    const GLfloat black[4] = {};
+    gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, frame);
+    gl.DepthMask(GL_FALSE);
+    gl.BindVertexArray(vertexArray.name());
+    gl.ClearNamedFramebufferfv(frame, GL_COLOR, 0, black);
+    gl.ClearNamedFramebufferfv(frame, GL_COLOR, 1, black);
+    drawLight(data);
+    if (background) drawBackground(camera);
+}
+
+const TechniqueData& Renderer::State::ready(Technique technique) const {
+    const auto found = techniques.find(technique);
+    const char* name = techniqueName(technique);
+    if (found == techniques.end())
+        throw InputError(name,
+                         technique == Technique::Pca ? "there are no PCA weights" : "there is no visibility",
+                         technique == Technique::Pca ? "run prt compress" : "run prt precompute");
+    if (!found->second.table.texture)
+        throw InputError(name, "no table was set", "make one with prt tabulate");
+    return found->second;
+}
+
+Renderer::Renderer(GlContext& context, const Scene& scene, const VisibilityMap* visibility,
+                   const PcaMap* pca) {
+    context.makeCurrent();
+    if (visibility) checkGrid(visibility->grid, scene, "visibility");
+    if (pca) checkGrid(pca->grid, scene, "PCA weights");
+    state_ = std::make_unique<State>(context, scene);
+    State& s = *state_;
+    s.vertexArray = makeVertexArray(s.gl);
+    s.backgroundProgram = GlProgram(s.gl, "screen.vert", "background.frag", "");
+    if (visibility)
+        s.addTechnique(Technique::Unc, visibility->grid, visibility->shOrder, shCount(visibility->shOrder),
+                       visibility->coefficients);
+    if (pca) s.addTechnique(Technique::Pca, pca->grid, pca->shOrder, pca->components, pca->weights);
+    context.check("making the renderer");
+}
+
+Renderer::~Renderer() {
+    if (state_) state_->context.makeCurrent();
+}
+
+void Renderer::setTable(const NormalTable& table) {
+    state_->context.makeCurrent();
+    const bool pca = table.kind == TableKind::TripleProduct;
+    const Technique technique = pca ? Technique::Pca : Technique::Unc;
+    const auto found = state_->techniques.find(technique);
+    if (found == state_->techniques.end())
+        throw InputError(techniqueName(technique),
+                         fmt::format("a {} table was given, but {}", tableKindName(table.kind),
+                                     pca ? "no PCA weights" : "no visibility"));
+    TechniqueData& data = found->second;
+    const int layers = data.perPoint + (pca ? 1 : 0);
+    if (table.shOrder != data.shOrder || table.layers != layers)
+        throw InputError("table",
+                         fmt::format("is of order {} with {} layers, the data needs order {} with {}",
+                                     table.shOrder, table.layers, data.shOrder, layers),
+                         "make it anew with prt tabulate");
+    uploadTable(state_->context, table, data.table);
+}
+
+void Renderer::setBackground(const FloatImage& latLong, double rotationRad) {
+    PRT_CHECK_EQ(latLong.channels, 3);
+    State& s = *state_;
+    s.context.makeCurrent();
+    const GLint edge = glInteger(s.gl, GL_MAX_TEXTURE_SIZE);
+    if (latLong.width < 1 || latLong.height < 1 || latLong.width > edge || latLong.height > edge)
+        throw InputError(
+            "background",
+            fmt::format("size {}x{} is outside 1x1 to {}x{}", latLong.width, latLong.height, edge, edge),
+            "scale it down");
+    s.background = makeImage(s.gl, GL_RGBA32F, latLong.width, latLong.height);
+    s.gl.TextureSubImage2D(s.background.name(), 0, 0, 0, latLong.width, latLong.height, GL_RGB, GL_FLOAT,
+                           latLong.pixels.data());
+    s.backgroundRotationRad = float(rotationRad);
+    s.context.check("uploading the background");
+}
+
+RenderedFrame Renderer::render(const Camera& camera, Technique technique, const RenderOptions& options) {
+    State& s = *state_;
+    const TechniqueData& data = s.ready(technique);
+    s.drawFrame(s.begin(camera, options), data, options);
+    s.context.check("drawing");
+    RenderedFrame frame;
+    frame.radiance = readRgb(s.gl, s.targets->radiance, options.width, options.height);
+    frame.irradiance = readRgb(s.gl, s.targets->irradiance, options.width, options.height);
+    s.context.check("reading the image back");
+    return frame;
+}
+
+SurfaceImage Renderer::surface(const Camera& camera, const RenderOptions& options) {
+    State& s = *state_;
+    s.drawSurface(s.begin(camera, options), options);
+    s.context.check("drawing");
+    SurfaceImage image;
+    image.width = options.width;
+    image.height = options.height;
+    const size_t pixels = size_t(options.width) * size_t(options.height);
+    const std::vector<float> places = readImage(s.gl, s.targets->place, pixels);
+    const std::vector<float> normals = readImage(s.gl, s.targets->normal, pixels);
+    const std::vector<float> albedos = readImage(s.gl, s.targets->albedo, pixels);
+    image.triangle.resize(pixels);
+    s.gl.GetTextureImage(s.targets->triangle.name(), 0, GL_RED_INTEGER, GL_UNSIGNED_INT,
+                         GLsizei(pixels * sizeof(uint32_t)), image.triangle.data());
+    s.context.check("reading the image back");
+    for (auto* vectors : {&image.position, &image.geometricNormal, &image.shadingNormal, &image.albedo})
+        vectors->assign(pixels, Vec3f::Zero());
+    parallelFor(pixels, 4096, [&](size_t begin, size_t end) {
+        for (size_t i = begin; i < end; ++i) {
+            const uint32_t triangle = image.triangle[i];
+            if (triangle == kNoTriangle) continue;
+            image.geometricNormal[i] = triangleNormal(s.geometry, triangle);
+            image.shadingNormal[i] = fromRgba(&normals[i * 4]);
+            image.albedo[i] = fromRgba(&albedos[i * 4]);
+            // As in light.frag: a centre a little outside of its triangle goes to the triangle's edge.
+            Vec3d b(1.0 - places[i * 4] - places[i * 4 + 1], places[i * 4], places[i * 4 + 1]);
+            b = b.cwiseMax(0.0);
+            b /= b.sum();
+            Vec3d point = Vec3d::Zero();
+            for (int corner = 0; corner < 3; ++corner) {
+                const uint32_t vertex = s.geometry.indices[size_t(triangle) * 3 + size_t(corner)];
+                point += b[corner] * s.geometry.positions[vertex].cast<double>();
+            }
+            image.position[i] = point.cast<float>();
+        }
+    });
+    return image;
+}
+
+double Renderer::frameMilliseconds(const Camera& camera, Technique technique, const RenderOptions& options,
+                                   int frames) {
+    PRT_CHECK_LT(0, frames);
+    constexpr int kWarmUp = 2;  // shaders are compiled for the state they meet first
+    State& s = *state_;
+    const TechniqueData& data = s.ready(technique);
+    const CameraFrame view = s.begin(camera, options);
+    std::vector<double> times;
+    for (int i = 0; i < kWarmUp + frames; ++i) {
+        throwIfInterrupted();
+        const Stopwatch watch;
+        s.drawFrame(view, data, options);
+        s.gl.Finish();
+        if (i >= kWarmUp) times.push_back(watch.seconds() * 1e3);
+    }
+    s.context.check("drawing");
+    std::ranges::sort(times);
+    const size_t half = times.size() / 2;
+    return times.size() % 2 ? times[half] : (times[half - 1] + times[half]) / 2;
+}
+
+}  // namespace prt
