@@ -1,0 +1,180 @@
+// Stage 1 from file to bundle [IwanickiSloan2012, Sec. 3].
+#include "precompute/visibility/precompute_job.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "precompute/base/error.h"
+#include "precompute/base/log.h"
+#include "precompute/base/parallel.h"
+#include "precompute/io/bundle.h"
+#include "precompute/io/glb.h"
+#include "precompute/math/sh.h"
+#include "precompute/visibility/bake.h"
+#include "precompute/visibility/fill.h"
+#include "precompute/visibility/precompute_section.h"
+
+namespace prt {
+namespace {
+
+constexpr int kSmallestAtlas = 16, kLargestAtlas = 8192;
+
+void checkRange(const char* option, int value, int low, int high) {
+    if (value < low || value > high)
+        throw UsageError(option, fmt::format("{} is out of range", value),
+                         fmt::format("choose {} to {}", low, high));
+}
+
+void checkSettings(const PrecomputeSettings& settings) {
+    checkRange("--order", settings.shOrder, 1, kMaxBundleShOrder);
+    checkRange("--rays", settings.rays, 1, kMaxBakeRays);
+    if (!settings.perVertex) checkRange("--texels", settings.texels, kSmallestAtlas, kLargestAtlas);
+}
+
+// Shells take it back as one word.
+std::string quoted(const std::string& word) {
+    const bool plain = !word.empty() && std::all_of(word.begin(), word.end(), [](unsigned char c) {
+        return std::isalnum(c) || c >= 0x80 ||
+               std::string_view("/._-+=:,@%").find(char(c)) != std::string_view::npos;
+    });
+    if (plain) return word;
+    std::string result = "'";
+    for (const char c : word) result += c == '\'' ? std::string("'\\''") : std::string(1, c);
+    return result + "'";
+}
+
+std::string commandLine(const PrecomputeSettings& settings) {
+    std::string line =
+        fmt::format("prt precompute {} -o {}", quoted(settings.meshPath), quoted(settings.bundlePath));
+    line += settings.perVertex ? std::string(" --per-vertex") : fmt::format(" --texels {}", settings.texels);
+    line += fmt::format(" --order {} --rays {}", settings.shOrder, settings.rays);
+    const LoadMeshOptions defaults;
+    if (settings.load.uvScale != defaults.uvScale)
+        line += fmt::format(" --uv-scale {}", settings.load.uvScale);
+    if (!settings.load.normalMap.empty()) line += " --normal-map " + quoted(settings.load.normalMap);
+    return line;
+}
+
+void noteRepairs(const PrecomputeReport& report) {
+    std::string list;
+    for (const auto& [kind, count] : report.repairs) {
+        std::string words = kind;
+        std::replace(words.begin(), words.end(), '_', ' ');
+        list += fmt::format("{}{} {}", list.empty() ? "" : ", ", count, words);
+    }
+    logNote(fmt::format("{} triangles, {} vertices{}{}", report.triangles, report.vertices,
+                        list.empty() ? "" : "; ", list));
+}
+
+void prepareAtlas(const PrecomputeSettings& settings, bool fileHasAtlas, Scene& scene,
+                  PrecomputeReport& report) {
+    if (fileHasAtlas && isValidAtlas(scene, settings.texels)) {
+        logNote("the file's second UV set is a valid atlas and is kept");
+        return;
+    }
+    AtlasOptions options;
+    options.texels = settings.texels;
+    report.atlas = buildAtlas(scene, options);
+    report.atlasMade = true;
+    logNote(fmt::format("atlas: {} charts, {:.0f} % of the texels used, {:.3g} texels per unit",
+                        report.atlas.charts, 100 * report.atlas.utilisation, report.atlas.texelsPerUnit));
+}
+
+std::vector<uint8_t> doubleSidedTriangles(const Scene& scene) {
+    std::vector<uint8_t> result(scene.triangleCount(), 0);
+    for (const ScenePrimitive& primitive : scene.primitives) {
+        if (primitive.material < 0 || size_t(primitive.material) >= scene.materials.size()) continue;
+        if (!scene.materials[size_t(primitive.material)].doubleSided) continue;
+        std::fill_n(result.begin() + primitive.firstIndex / 3, primitive.indexCount / 3, uint8_t(1));
+    }
+    return result;
+}
+
+struct Baked {
+    VisibilityMap map;
+    BakeResult result;
+    size_t points = 0;
+};
+
+Baked bake(const RayCaster& caster, const Scene& scene, const PrecomputeSettings& settings) {
+    const std::vector<uint8_t> doubleSided = doubleSidedTriangles(scene);
+    BakeOptions options;
+    options.shOrder = settings.shOrder;
+    options.rays = settings.rays;
+    options.doubleSided = doubleSided;
+    Baked baked;
+    if (settings.perVertex) {
+        const VertexPoints vertices = makeVertexPoints(scene);
+        baked.points = vertices.sameAs.size();
+        baked.result = bakeVertexVisibility(caster, vertices, options);
+        baked.map = fillVertices(scene, vertices, baked.result, settings.shOrder);
+    } else {
+        const TexelSurface surface = rasterizeTexels(scene, settings.texels, settings.texels);
+        if (surface.points.empty())
+            throw InputError(settings.meshPath, "no texel of the atlas lies on the mesh", "raise --texels");
+        baked.points = surface.points.size();
+        baked.result = bakeVisibility(caster, surface.points, options);
+        baked.map = fillTexels(surface, baked.result, settings.shOrder);
+    }
+    baked.map.attributes = {{"projection", "plain"},
+                            {"directionSet", "spherical-fibonacci"},
+                            {"rays", std::to_string(settings.rays)},
+                            {"embreeIsa", caster.instructionSet()}};
+    return baked;
+}
+
+void countValidity(const Baked& baked, PrecomputeReport& report) {
+    double ao = 0;
+    size_t valid = 0;
+    for (size_t i = 0; i < baked.map.validity.size(); ++i) {
+        ++report.validity[size_t(baked.map.validity[i])];
+        if (baked.map.validity[i] != Validity::Valid) continue;
+        ao += double(baked.map.ao[i]);
+        ++valid;
+    }
+    report.meanAo = valid ? ao / double(valid) : 0;
+}
+
+}  // namespace
+
+PrecomputeReport runPrecompute(const PrecomputeSettings& settings) {
+    checkSettings(settings);
+    const Stopwatch watch;
+    PrecomputeReport report;
+    const std::string sourceHash = xxh3HexOfFile(settings.meshPath);
+    LoadMeshReport loadReport;
+    Scene scene = loadMesh(settings.meshPath, settings.load, &loadReport);
+    report.repairs = loadReport.counts;
+    report.triangles = scene.triangleCount();
+    // Opened before the long work, so that a place that cannot be written is found out at once.
+    BundleTransaction bundle(settings.bundlePath, true);
+    report.vertices = scene.vertexCount();
+    noteRepairs(report);
+    if (!settings.perVertex) prepareAtlas(settings, loadReport.hasAtlas, scene, report);
+    report.vertices = scene.vertexCount();
+    throwIfInterrupted();
+
+    const RayCaster caster(scene.positions, scene.indices);
+    const Baked baked = bake(caster, scene, settings);
+    report.points = baked.points;
+    report.rays = baked.result.rays;
+    report.traceSeconds = baked.result.traceSeconds;
+    report.raysPerSecond = report.traceSeconds > 0 ? double(report.rays) / report.traceSeconds : 0;
+    report.instructionSet = caster.instructionSet();
+    countValidity(baked, report);
+    throwIfInterrupted();
+
+    const std::string command = commandLine(settings);
+    writeGlb(scene, bundle.stage("mesh.glb", {{settings.meshPath, sourceHash}}, command).string());
+    writeVisibilityFile(bundle.stage("visibility.exr", {}, command).string(), baked.map);
+    bundle.setMadeFrom("visibility.exr", {{"mesh.glb", bundle.hashOfStaged("mesh.glb")}});
+    report.seconds = watch.seconds();
+    report.peakResidentBytes = peakResidentBytes();
+    bundle.setSection("precompute", precomputeSection(settings, report));
+    throwIfInterrupted();
+    bundle.commit();
+    return report;
+}
+
+}  // namespace prt
