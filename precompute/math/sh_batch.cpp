@@ -1,4 +1,4 @@
-// Spherical harmonics of many directions: blocks of 16, structure of arrays, bands from the bottom up so that
+// Spherical harmonics of many directions: blocks of 32, structure of arrays, bands from the bottom up so that
 // all m of a band are independent chains; then a transposition in 4×4 tiles into rows.
 // Recurrences as in sh.cpp [Sloan2008, A2].
 #include <algorithm>
@@ -11,42 +11,72 @@
 namespace prt {
 namespace {
 
-constexpr int kLanes = 16;
+// More than 16, or GCC unrolls the loops over lanes completely before it could vectorise them.
+constexpr int kLanes = 32;
 constexpr int kMaxFloatShOrder = 10;  // as in evalSh: above it the recurrences run in double
+
+/// One function pair ±m: q = (rise z) one − fall two, and its products with the two parts of (x + iy)^m.
+template <typename T>
+[[gnu::always_inline]] inline void evalStep(T rise, T fall, const T* __restrict z, const T* __restrict one,
+                                            const T* __restrict two, const T* __restrict cosPart,
+                                            const T* __restrict sinPart, T* __restrict q,
+                                            float* __restrict outCos, float* __restrict outSin) {
+    for (int k = 0; k < kLanes; ++k) {
+        const T value = rise * z[k] * one[k] - fall * two[k];
+        q[k] = value;
+        outSin[k] = float(value * sinPart[k]);
+        outCos[k] = float(value * cosPart[k]);
+    }
+}
+
+template <typename T>
+[[gnu::always_inline]] inline void evalDiagonal(T diagonal, const T* __restrict cosPart,
+                                                const T* __restrict sinPart, T* __restrict q,
+                                                float* __restrict outCos, float* __restrict outSin) {
+    for (int k = 0; k < kLanes; ++k) {
+        q[k] = diagonal;
+        outSin[k] = float(diagonal * sinPart[k]);
+        outCos[k] = float(diagonal * cosPart[k]);
+    }
+}
+
+/// (c', s') = (x + iy) (c + is).
+template <typename T>
+[[gnu::always_inline]] inline void raisePower(const T* __restrict x, const T* __restrict y,
+                                              const T* __restrict c, const T* __restrict s,
+                                              T* __restrict cNext, T* __restrict sNext) {
+    for (int k = 0; k < kLanes; ++k) {
+        cNext[k] = x[k] * c[k] - y[k] * s[k];
+        sNext[k] = x[k] * s[k] + y[k] * c[k];
+    }
+}
 
 /// @param xyz  [3][kLanes]   @param out  [n²][kLanes]
 template <typename T>
 [[gnu::always_inline]] inline void evalBlock(const LegendreRecurrence<T>& t, int shOrder,
                                              const T* __restrict xyz, float* __restrict out) {
-    T q[legendreCount(kMaxShOrder)][kLanes];
-    T cosPart[kMaxShOrder][kLanes], sinPart[kMaxShOrder][kLanes];
+    alignas(64) T q[legendreCount(kMaxShOrder)][kLanes];
+    alignas(64) T cosPart[kMaxShOrder][kLanes], sinPart[kMaxShOrder][kLanes];
+    alignas(64) float unused[kLanes];  // where the sine part of m = 0 goes
     const T *x = xyz, *y = xyz + kLanes, *z = xyz + 2 * kLanes;
     for (int k = 0; k < kLanes; ++k) {
         cosPart[0][k] = 1;
         sinPart[0][k] = 0;
     }
     for (int m = 1; m < shOrder; ++m)
-        for (int k = 0; k < kLanes; ++k) {
-            cosPart[m][k] = x[k] * cosPart[m - 1][k] - y[k] * sinPart[m - 1][k];
-            sinPart[m][k] = x[k] * sinPart[m - 1][k] + y[k] * cosPart[m - 1][k];
-        }
+        raisePower(x, y, cosPart[m - 1], sinPart[m - 1], cosPart[m], sinPart[m]);
     for (int l = 0; l < shOrder; ++l) {
         float* const middle = out + shIndex(l, 0) * kLanes;
-        for (int m = 0; m <= l; ++m) {
+        for (int m = 0; m < l; ++m) {
             const int i = legendreIndex(l, m);
-            const T *one = q[l > m ? legendreIndex(l - 1, m) : i],
-                    *two = q[l > m + 1 ? legendreIndex(l - 2, m) : i];
-            const T rise = t.rise[i], fall = t.fall[i], diagonal = t.diagonal[m];
-            if (m == l)
-                for (int k = 0; k < kLanes; ++k) q[i][k] = diagonal;
-            else if (m == l - 1)
-                for (int k = 0; k < kLanes; ++k) q[i][k] = rise * z[k] * one[k];
-            else
-                for (int k = 0; k < kLanes; ++k) q[i][k] = rise * z[k] * one[k] - fall * two[k];
-            if (m > 0)
-                for (int k = 0; k < kLanes; ++k) middle[-m * kLanes + k] = float(q[i][k] * sinPart[m][k]);
-            for (int k = 0; k < kLanes; ++k) middle[m * kLanes + k] = float(q[i][k] * cosPart[m][k]);
+            const T* one = q[legendreIndex(l - 1, m)];
+            // fall is 0 where there is no second function below.
+            const T* two = m < l - 1 ? q[legendreIndex(l - 2, m)] : one;
+            evalStep(t.rise[i], t.fall[i], z, one, two, cosPart[m], sinPart[m], q[i], middle + m * kLanes,
+                     m > 0 ? middle - m * kLanes : unused);
         }
+        evalDiagonal(t.diagonal[l], cosPart[l], sinPart[l], q[legendreIndex(l, l)], middle + l * kLanes,
+                     l > 0 ? middle - l * kLanes : unused);
     }
 }
 
