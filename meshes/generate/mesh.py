@@ -129,21 +129,26 @@ class Mesh:
                 self.poly(pts, material(centre) if callable(material) else material,
                           bool(hidden and hidden(centre)))
 
-    def box(self, group, x, y, z, material, hide="", cuts=None, sides=None, part=True):
-        """x, y, z: (low, high) or lists of cuts. hide: faces as '+y-x'. sides: material by face, as {'+y': …}."""
-        if part:
-            self.part(group)
-        x, y, z = list(x), list(y), list(z)
-        sides = sides or {}
+    def box(self, group, x, y, z, material, hide="", grow=None):
+        """x, y, z: (low, high) or lists of cuts. hide: faces as '+y-x', or a function of face and cell centre.
+
+        Each box is up to 4 mm larger than asked, by its place in the order, so that faces of neighbours that would
+        share a plane do not (unless grow is given).
+        """
+        self.part(group)
+        grow = 0.0006 * (len(self.parts) % 7) if grow is None else grow
+        x, y, z = ([c[0] - grow] + list(c[1:-1]) + [c[-1] + grow] for c in (x, y, z))
         X, Y, Z = (1., 0., 0.), (0., 1., 0.), (0., 0., 1.)
         nX, nZ = (-1., 0., 0.), (0., 0., -1.)
         rx, rz = [-c for c in reversed(x)], [-c for c in reversed(z)]
         for name, o, u, v, us, vs in (("+z", (0, 0, z[-1]), X, Y, x, y), ("-z", (0, 0, z[0]), nX, Y, rx, y),
                                       ("+x", (x[-1], 0, 0), nZ, Y, rz, y), ("-x", (x[0], 0, 0), Z, Y, z, y),
                                       ("+y", (0, y[-1], 0), X, nZ, x, rz), ("-y", (0, y[0], 0), X, Z, x, z)):
-            self.rect(o, u, v, us, vs, sides.get(name, material), hidden=(lambda c: True) if name in hide else None)
+            self.rect(o, u, v, us, vs, material,
+                      hidden=(lambda c, name=name: hide(name, c)) if callable(hide) else (lambda c, name=name: name in hide))
 
-    def prism(self, group, outline, low, high, axis, material, ends=None, pieces=None, sides=None, cuts=None, hide=()):
+    def prism(self, group, outline, low, high, axis, material, ends=None, pieces=None, sides=None, cuts=None, hide=(),
+              hide_ends=False):
         """Extrudes an outline along an axis: 'x' takes (z, y) points, 'z' takes (x, y), 'y' takes (x, z).
 
         pieces: the end caps as convex index lists (default: the outline is convex). sides, hide: by outline edge.
@@ -164,13 +169,12 @@ class Mesh:
         for piece in pieces or [range(len(outline))]:
             p = [outline[i] for i in piece]
             p = p if forward else p[::-1]
-            self.poly([at(q, ts[-1]) for q in p], ends or material)
-            self.poly([at(q, ts[0]) for q in reversed(p)], ends or material)
+            self.poly([at(q, ts[-1]) for q in p], ends or material, hide_ends)
+            self.poly([at(q, ts[0]) for q in reversed(p)], ends or material, hide_ends)
 
-    def lathe(self, group, profile, centre, segments, material, crease=35.0, turn=0.0, part=True):
-        """A solid of revolution about +Y: profile is [(radius, height)] upward, closed by flat ends."""
-        if part:
-            self.part(group)
+    def lathe(self, group, profile, centre, segments, material, crease=35.0, turn=0.0, hide=""):
+        """A solid of revolution about +Y: profile is [(radius, height)] upward, closed by flat ends (hide: '+y-y')."""
+        self.part(group)
         tile = self.tiles.get(material, 1.0)
         widest = max(r for r, _ in profile)
         around = max(1, round(2 * math.pi * widest / tile))  # whole repetitions
@@ -213,13 +217,13 @@ class Mesh:
                 self.poly([at(r, y, j) for r, y, j, *_ in corners], material,
                           normals=[(n[0] * ring[j][0], n[1], n[0] * ring[j][1]) for _, _, j, n, _, _ in corners],
                           uvs=[(u, v) for *_, u, v in corners])
-        for (r, y), order in ((profile[0], range(segments - 1, -1, -1)), (profile[-1], range(segments))):
+        for (r, y), order, name in ((profile[0], range(segments - 1, -1, -1), "-y"), (profile[-1], range(segments), "+y")):
             if r > EPS:
-                self.poly([at(r, y, k) for k in order], material)
+                self.poly([at(r, y, k) for k in order], material, name in hide)
 
-    def blob(self, group, centre, radii, level, material, bumps=0.0, seed=0):
+    def blob(self, group, centre, radii, frequency, material, bumps=0.0, seed=0):
         """A displaced icosphere with smooth normals."""
-        points, triangles = icosphere(level)
+        points, triangles = icosphere(frequency)
 
         def bump(p):
             s = 0.0
@@ -274,28 +278,34 @@ class Mesh:
         return "\n".join(head + ["%s %s" % (kind, s) for kind, table in tables.items() for s in table] + body) + "\n"
 
 
-def icosphere(level):
-    """Unit icosphere: points, counter-clockwise triangles (20·4^level)."""
+def icosphere(frequency):
+    """Unit icosphere: points, counter-clockwise triangles (20·frequency²)."""
     g = (1 + math.sqrt(5)) / 2
-    points = [unit(p) for p in ((-1, g, 0), (1, g, 0), (-1, -g, 0), (1, -g, 0), (0, -1, g), (0, 1, g),
-                                (0, -1, -g), (0, 1, -g), (g, 0, -1), (g, 0, 1), (-g, 0, -1), (-g, 0, 1))]
-    triangles = [(0, 11, 5), (0, 5, 1), (0, 1, 7), (0, 7, 10), (0, 10, 11), (1, 5, 9), (5, 11, 4), (11, 10, 2),
-                 (10, 7, 6), (7, 1, 8), (3, 9, 4), (3, 4, 2), (3, 2, 6), (3, 6, 8), (3, 8, 9), (4, 9, 5), (2, 4, 11),
-                 (6, 2, 10), (8, 6, 7), (9, 8, 1)]
-    for _ in range(level):
-        middles, finer = {}, []
+    corners = [unit(p) for p in ((-1, g, 0), (1, g, 0), (-1, -g, 0), (1, -g, 0), (0, -1, g), (0, 1, g),
+                                 (0, -1, -g), (0, 1, -g), (g, 0, -1), (g, 0, 1), (-g, 0, -1), (-g, 0, 1))]
+    faces = [(0, 11, 5), (0, 5, 1), (0, 1, 7), (0, 7, 10), (0, 10, 11), (1, 5, 9), (5, 11, 4), (11, 10, 2),
+             (10, 7, 6), (7, 1, 8), (3, 9, 4), (3, 4, 2), (3, 2, 6), (3, 6, 8), (3, 8, 9), (4, 9, 5), (2, 4, 11),
+             (6, 2, 10), (8, 6, 7), (9, 8, 1)]
+    points, known, triangles = [], {}, []
 
-        def middle(a, b):
-            key = (min(a, b), max(a, b))
-            if key not in middles:
-                middles[key] = len(points)
-                points.append(unit(add(points[a], points[b])))
-            return middles[key]
+    def point(weights):  # shared by the faces around it: keyed by corner and weight
+        key = tuple(sorted((c, w) for c, w in weights if w))
+        if key not in known:
+            known[key] = len(points)
+            p = (0.0, 0.0, 0.0)
+            for c, w in key:
+                p = add(p, corners[c], w)
+            points.append(unit(p))
+        return known[key]
 
-        for a, b, c in triangles:
-            ab, bc, ca = middle(a, b), middle(b, c), middle(c, a)
-            finer += [(a, ab, ca), (b, bc, ab), (c, ca, bc), (ab, bc, ca)]
-        triangles = finer
+    n = frequency
+    for a, b, c in faces:
+        at = lambda i, j: point(((a, n - i - j), (b, i), (c, j)))
+        for i in range(n):
+            for j in range(n - i):
+                triangles.append((at(i, j), at(i + 1, j), at(i, j + 1)))
+                if i + j < n - 1:
+                    triangles.append((at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)))
     return points, triangles
 
 

@@ -93,8 +93,8 @@ def roof(n):
         rim = smoothstep(0.0, 0.045, along)
         h = 0.012 - 0.0055 * along + per_cell(cell, 34, 0.0006) + per_cell(cell, 35, 0.0012) * fx
         h = h - 0.0045 * (1 - rim) - 0.004 * (1 - side) + 0.00028 * grain
-        shade = rgb(0.245, 0.262, 0.285) * (1 + 0.17 * per_cell(cell, 36))[..., None]
-        shade = mix(shade, rgb(0.30, 0.25, 0.20), np.clip(0.4 * per_cell(cell, 37), 0, 0.6))
+        shade = rgb(0.200, 0.214, 0.234) * (1 + 0.14 * per_cell(cell, 36))[..., None]
+        shade = mix(shade, rgb(0.25, 0.205, 0.165), np.clip(0.4 * per_cell(cell, 37), 0, 0.6))
         shade = shade * (1 + 0.07 * grain)[..., None]
         shade = mix(shade * 0.55, shade, side * rim)
         on = (along >= 0) & (along < 2.2) & (h > height)
@@ -176,7 +176,7 @@ def grass(n):
 # name: (height field, texels of the albedo, of the normal map, slope scale): the scale sets rims to 15–30 degrees
 MAPS = {
     "brick": (brick, 256, 256, 0.85), "roof": (roof, 256, 256, 1.0), "plank": (plank, 256, 256, 0.95),
-    "plaster": (plaster, 256, 256, 0.65), "cobble": (cobble, 256, 256, 0.50), "grass": (grass, 256, 128, 0.65),
+    "plaster": (plaster, 256, 256, 0.65), "cobble": (cobble, 256, 256, 0.50), "grass": (grass, 128, 128, 1.1),
 }
 
 
@@ -203,7 +203,7 @@ def quantise(x, levels):
 
 
 def encode_normal(n):
-    """Quantises to steps of 2 around 128, which decodes to exactly (0, 0, 1) for a flat texel's x and y within 0.4 %."""
+    """Quantises x and y to steps of 2 around 128, which a PNG stores in fewer bits."""
     xy = 128 + 2 * np.round(n[..., :2] * 127.5 / 2)
     z = np.round(127.5 + 127.5 * n[..., 2:])
     return np.clip(np.concatenate([xy, z], -1), 0, 255).astype(np.uint8)
