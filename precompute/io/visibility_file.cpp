@@ -1,0 +1,256 @@
+// visibility.exr and pca.exr.
+// Sources: OpenEXR 3.1 multi-part files; the layout is this project's own (tools/docs/formats.md).
+#include "precompute/io/visibility_file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "precompute/base/check.h"
+#include "precompute/base/error.h"
+#include "precompute/io/exr_conventions.h"
+#include "precompute/io/exr_file.h"
+
+namespace prt {
+namespace {
+
+static_assert(sizeof(Validity) == sizeof(uint32_t));
+
+size_t gridPixels(const PointGrid& grid) { return size_t(grid.width) * size_t(grid.height); }
+
+void checkGrid(const PointGrid& grid) {
+    PRT_CHECK(grid.width > 0 && grid.height > 0);
+    if (grid.domain == PointDomain::Texel) PRT_CHECK_EQ(grid.count, gridPixels(grid));
+    PRT_CHECK_LE(grid.count, gridPixels(grid));
+}
+
+void setDomain(const PointGrid& grid, ExrAttributes& attributes) {
+    attributes.strings["domain"] = pointDomainName(grid.domain);
+    if (grid.domain == PointDomain::Vertex) attributes.ints["vertexCount"] = int(grid.count);
+}
+
+PointGrid readGrid(const ExrPartInfo& part, const std::string& path) {
+    const std::string& domain = requireString(part.attributes, "domain", path);
+    if (domain == pointDomainName(PointDomain::Texel))
+        return {PointDomain::Texel, part.width, part.height, size_t(part.width) * size_t(part.height)};
+    if (domain != pointDomainName(PointDomain::Vertex))
+        throw InputError(path, fmt::format("has points of an unknown domain \"{}\"", domain));
+    const int64_t pixels = int64_t(part.width) * part.height;
+    const int count =
+        requireInt(part.attributes, "vertexCount", 0, int(std::min<int64_t>(pixels, INT32_MAX)), path);
+    const PointGrid grid = vertexGrid(size_t(count));
+    if (grid.width != part.width || grid.height != part.height)
+        throw InputError(path, fmt::format("has {} x {} pixels for {} vertices, expected {} x {}", part.width,
+                                           part.height, count, grid.width, grid.height));
+    return grid;
+}
+
+/// Values of [count×components], with zeros behind the last point where the grid is larger.
+template <class Value>
+class PaddedPoints {
+  public:
+    PaddedPoints(const std::vector<Value>& values, const PointGrid& grid, size_t components) {
+        PRT_CHECK_EQ(values.size(), grid.count * components);
+        data_ = values.data();
+        if (grid.count == gridPixels(grid)) return;
+        padded_ = values;
+        padded_.resize(gridPixels(grid) * components);
+        data_ = padded_.data();
+    }
+    const Value* data() const { return data_; }
+
+  private:
+    const Value* data_;
+    std::vector<Value> padded_;
+};
+
+/// Channels over interleaved 4-byte values.
+/// @param names  one per component
+template <class Channel, class Pointer>
+void addInterleaved(std::vector<Channel>& channels, const std::vector<std::string>& names, ExrType type,
+                    Pointer data, int width, size_t stride) {
+    for (size_t i = 0; i < names.size(); ++i)
+        channels.push_back({names[i], type, data + i, stride * 4, size_t(width) * stride * 4});
+}
+
+std::vector<std::string> indexedNames(const std::string& prefix, int count) {
+    std::vector<std::string> names;
+    for (int i = 0; i < count; ++i) names.push_back(indexedName(prefix, i));
+    return names;
+}
+
+const std::vector<std::string> kNormalNames{"normal.X", "normal.Y", "normal.Z"};
+
+void checkChannels(const ExrPartInfo& part, const std::vector<std::string>& names, const std::string& path) {
+    for (const std::string& name : names)
+        if (!part.channels.contains(name))
+            throw InputError(path, fmt::format("has no channel {}", name),
+                             "the file is damaged; make it again");
+}
+
+void checkValidity(const std::vector<Validity>& validity, const std::string& path) {
+    for (size_t i = 0; i < validity.size(); ++i)
+        if (uint32_t(validity[i]) >= uint32_t(kValidityCount))
+            throw InputError(path,
+                             fmt::format("point {} has the unknown validity {}", i, uint32_t(validity[i])));
+}
+
+size_t findPart(const ExrReader& reader, const std::string& name, const std::string& path) {
+    for (size_t i = 0; i < reader.parts().size(); ++i)
+        if (reader.parts()[i].name == name) return i;
+    throw InputError(path, fmt::format("has no part \"{}\"", name), "the file is damaged; make it again");
+}
+
+}  // namespace
+
+const char* pointDomainName(PointDomain domain) { return domain == PointDomain::Texel ? "texel" : "vertex"; }
+
+const char* validityName(Validity validity) {
+    switch (validity) {
+        case Validity::Empty:
+            return "empty";
+        case Validity::Valid:
+            return "valid";
+        case Validity::GutterFilled:
+            return "gutter_filled";
+        case Validity::InsideFilled:
+            return "inside_filled";
+        case Validity::Inside:
+            return "inside";
+    }
+    return "unknown";
+}
+
+PointGrid vertexGrid(size_t vertexCount) {
+    const size_t rows = (vertexCount + size_t(kVertexRowLength) - 1) / size_t(kVertexRowLength);
+    return {PointDomain::Vertex, kVertexRowLength, int(std::max<size_t>(rows, 1)), vertexCount};
+}
+
+void writeVisibilityFile(const std::string& path, const VisibilityMap& map) {
+    checkGrid(map.grid);
+    PRT_CHECK(map.shOrder >= 1 && map.shOrder <= kMaxFileShOrder);
+    const int coefficients = map.shOrder * map.shOrder;
+    const PaddedPoints values(map.coefficients, map.grid, size_t(coefficients));
+    const PaddedPoints ao(map.ao, map.grid, 1);
+    const PaddedPoints validity(map.validity, map.grid, 1);
+    PRT_CHECK_EQ(map.normals.size(), map.grid.count);
+    std::vector<Vec3f> normals(map.normals);
+    normals.resize(gridPixels(map.grid), Vec3f::Zero());
+
+    ExrPartOut part;
+    part.width = map.grid.width;
+    part.height = map.grid.height;
+    part.attributes = conventionAttributes("visibility", map.shOrder, map.attributes);
+    setDomain(map.grid, part.attributes);
+    addInterleaved(part.channels, indexedNames("V", coefficients), ExrType::Float, values.data(), part.width,
+                   size_t(coefficients));
+    addInterleaved(part.channels, {"ao"}, ExrType::Float, ao.data(), part.width, 1);
+    addInterleaved(part.channels, kNormalNames, ExrType::Float, normals[0].data(), part.width, 3);
+    addInterleaved(part.channels, {"validity"}, ExrType::Uint, validity.data(), part.width, 1);
+    writeExr(path, {part});
+}
+
+VisibilityMap readVisibilityFile(const std::string& path) {
+    const ExrReader reader(path);
+    const ExrPartInfo& part = reader.parts().at(0);
+    VisibilityMap map;
+    map.attributes = checkConventions(part.attributes, "visibility", path);
+    map.shOrder = requireInt(part.attributes, "shOrder", 1, kMaxFileShOrder, path);
+    map.grid = readGrid(part, path);
+    const int coefficients = map.shOrder * map.shOrder;
+    const std::vector<std::string> names = indexedNames("V", coefficients);
+    checkChannels(part, names, path);
+    checkChannels(part, {"ao", "normal.X", "normal.Y", "normal.Z", "validity"}, path);
+    if (part.channels.at("validity") != ExrType::Uint)
+        throw InputError(path, "the channel validity is not of unsigned integers");
+
+    const size_t pixels = gridPixels(map.grid), count = map.grid.count;
+    map.coefficients.resize(pixels * size_t(coefficients));
+    map.ao.resize(pixels);
+    map.normals.resize(pixels, Vec3f::Zero());
+    map.validity.resize(pixels);
+    std::vector<ExrChannelIn> channels;
+    addInterleaved(channels, names, ExrType::Float, map.coefficients.data(), part.width,
+                   size_t(coefficients));
+    addInterleaved(channels, {"ao"}, ExrType::Float, map.ao.data(), part.width, 1);
+    addInterleaved(channels, kNormalNames, ExrType::Float, map.normals[0].data(), part.width, 3);
+    addInterleaved(channels, {"validity"}, ExrType::Uint, map.validity.data(), part.width, 1);
+    reader.read(0, channels);
+    map.coefficients.resize(count * size_t(coefficients));
+    map.ao.resize(count);
+    map.normals.resize(count);
+    map.validity.resize(count);
+    checkValidity(map.validity, path);
+    return map;
+}
+
+void writePcaFile(const std::string& path, const PcaMap& map) {
+    checkGrid(map.grid);
+    PRT_CHECK(map.shOrder >= 1 && map.shOrder <= kMaxFileShOrder);
+    const size_t coefficients = size_t(map.shOrder) * size_t(map.shOrder);
+    PRT_CHECK(map.components >= 1 && size_t(map.components) <= coefficients);
+    PRT_CHECK_EQ(map.mean.size(), coefficients);
+    PRT_CHECK_EQ(map.basis.size(), coefficients * size_t(map.components));
+    PRT_CHECK_EQ(map.variance.size(), size_t(map.components));
+    const PaddedPoints weights(map.weights, map.grid, size_t(map.components));
+    std::vector<float> rows = map.mean;
+    rows.insert(rows.end(), map.basis.begin(), map.basis.end());
+
+    std::vector<ExrPartOut> parts(2);
+    ExrPartOut& weightPart = parts[0];
+    weightPart.name = "weights";
+    weightPart.width = map.grid.width;
+    weightPart.height = map.grid.height;
+    weightPart.attributes = conventionAttributes("pca", map.shOrder, map.attributes);
+    weightPart.attributes.ints["componentCount"] = map.components;
+    weightPart.attributes.floatVectors["variance"] = map.variance;
+    setDomain(map.grid, weightPart.attributes);
+    addInterleaved(weightPart.channels, indexedNames("w", map.components), ExrType::Float, weights.data(),
+                   weightPart.width, size_t(map.components));
+    ExrPartOut& basisPart = parts[1];
+    basisPart.name = "basis";
+    basisPart.width = int(coefficients);
+    basisPart.height = map.components + 1;
+    basisPart.attributes = conventionAttributes("pca", map.shOrder, {});
+    basisPart.attributes.strings["rows"] = "row 0 the mean, row m + 1 principal vector m; columns shIndex";
+    addInterleaved(basisPart.channels, {"value"}, ExrType::Float, rows.data(), basisPart.width, 1);
+    writeExr(path, parts);
+}
+
+PcaMap readPcaFile(const std::string& path) {
+    const ExrReader reader(path);
+    const size_t weightPart = findPart(reader, "weights", path), basisPart = findPart(reader, "basis", path);
+    const ExrPartInfo& part = reader.parts()[weightPart];
+    const ExrPartInfo& basis = reader.parts()[basisPart];
+    PcaMap map;
+    map.attributes = checkConventions(part.attributes, "pca", path);
+    map.shOrder = requireInt(part.attributes, "shOrder", 1, kMaxFileShOrder, path);
+    const int coefficients = map.shOrder * map.shOrder;
+    map.components = requireInt(part.attributes, "componentCount", 1, coefficients, path);
+    map.grid = readGrid(part, path);
+    if (basis.width != coefficients || basis.height != map.components + 1)
+        throw InputError(path, fmt::format("has a basis of {} x {} values, expected {} x {}", basis.width,
+                                           basis.height, coefficients, map.components + 1));
+    const std::vector<std::string> names = indexedNames("w", map.components);
+    checkChannels(part, names, path);
+    checkChannels(basis, {"value"}, path);
+    const auto variance = part.attributes.floatVectors.find("variance");
+    if (variance == part.attributes.floatVectors.end() || variance->second.size() != size_t(map.components))
+        throw InputError(path, fmt::format("has no attribute variance of {} values", map.components));
+    map.variance = variance->second;
+
+    std::vector<float> rows(size_t(coefficients) * size_t(map.components + 1));
+    std::vector<ExrChannelIn> channels;
+    addInterleaved(channels, {"value"}, ExrType::Float, rows.data(), basis.width, 1);
+    reader.read(basisPart, channels);
+    map.mean.assign(rows.begin(), rows.begin() + coefficients);
+    map.basis.assign(rows.begin() + coefficients, rows.end());
+    map.weights.resize(gridPixels(map.grid) * size_t(map.components));
+    channels.clear();
+    addInterleaved(channels, names, ExrType::Float, map.weights.data(), part.width, size_t(map.components));
+    reader.read(weightPart, channels);
+    map.weights.resize(map.grid.count * size_t(map.components));
+    return map;
+}
+
+}  // namespace prt
