@@ -91,7 +91,7 @@ PRT_TARGET_CLONES void evalBlockDouble(const LegendreRecurrence<double>& t, int 
 
 /// rows[k·columns + i] = lanes[i·kLanes + k] for k < rowCount.
 void transposeBlock(const float* lanes, int columns, int rowCount, float* rows) {
-    using Vec4 [[gnu::vector_size(16), gnu::aligned(4)]] = float;
+    using Vec4 [[gnu::vector_size(16), gnu::aligned(4), gnu::may_alias]] = float;
     const auto load = [](const float* p) { return *reinterpret_cast<const Vec4*>(p); };
     for (int k = 0; k < rowCount; k += 4) {
         const bool wholeRows = k + 4 <= rowCount;
