@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "precompute/io/environment_file.h"
+#include "precompute/io/exr_file.h"
 #include "precompute/io/image.h"
 #include "tests/tools/prt_process.h"
 
@@ -50,8 +51,15 @@ class Pipeline : public testing::Test {
         return loadExr("frame.exr");
     }
     FloatImage loadExr(const std::string& name) {
-        // Environments must be 2:1; pictures need not, so read by the picture's own size.
-        return readExrImage((folder_ / name).string());
+        const ExrReader reader(folder_ / name);
+        FloatImage image{reader.parts()[0].width, reader.parts()[0].height, 3, {}};
+        image.pixels.resize(size_t(image.width) * size_t(image.height) * 3);
+        std::vector<ExrChannelIn> channels;
+        for (const char* channel : {"R", "G", "B"})
+            channels.push_back({channel, ExrType::Float, image.pixels.data() + channels.size(), 12,
+                                size_t(image.width) * 12});
+        reader.read(0, channels);
+        return image;
     }
     Folder folder_;
 };
