@@ -2,8 +2,8 @@
 import math
 
 from . import textures
-from .mesh import Mesh, add, cross, dot, lines, unit
-from .parts import Wall, body, column, log, opening, picket, shutter, window
+from .mesh import Mesh, add, cross, lines, unit
+from .parts import body, column, log, opening, picket, window
 
 # main block: half width, half depth, height of the eaves, slope of the roof (rise over run)
 XW, ZD, EAVES, SLOPE = 3.7, 2.8, 4.2, 0.9
@@ -492,7 +492,6 @@ def fence(m):
         m.box(g, (s, s + 0.07), (0.10, 1.02), (-0.02, 0.03), "paint_white")
     for y in (0.22, 0.74):
         m.box(g, (0.03, 1.23), (y, y + 0.085), (-0.006, 0.026), "paint_white")
-    w = 1.17 / 0.62
     m.prism(g, [(0.06, 0.29), (0.16, 0.27), (1.20, 0.75), (1.10, 0.77)], -0.012, 0.018, "z", "paint_white")
     m.place = lambda p: p
     for k in range(7):

@@ -49,7 +49,6 @@ def cornell():
         m.part(group)
         p = [(w - x / 100, d - z / 100) for x, z in corners]
         ys = [-0.02] + lines(0.0, height, 0.42)
-        middle = [sum(c[k] for c in p) / 4 for k in (0, 1)]
         if area_vector([(a, 0.0, b) for a, b in p])[1] < 0:
             p.reverse()  # counter-clockwise from above
         n = 4
