@@ -57,7 +57,6 @@ PcaMap makePcaMap(const VisibilityMap& visibility, const PcaResult& pca, std::ve
     map.weights = std::move(weights);
     // How the visibility was projected stays true of its compressed form.
     map.attributes = visibility.attributes;
-    map.attributes["compression"] = "pca";
     map.attributes["explainedVariance"] = fmt::format("{:.9g}", pca.explainedVariance);
     return map;
 }
@@ -112,14 +111,12 @@ NormalTable makeTable(const Environment& environment, const TableTarget& target,
     table.values = buildLightCosineTable(light, target.shOrder, size);
     table.attributes = {{"environmentName", environment.name},
                         {"environmentHash", environment.contentHash},
-                        {"cosineBands", std::to_string(kTableCosineBands)},
-                        {"shOrder", std::to_string(target.shOrder)}};
+                        {"cosineBands", std::to_string(kTableCosineBands)}};
     if (!target.mean.empty()) {
         const int components = int(target.basis.size() / target.mean.size());
         table.kind = TableKind::TripleProduct;
         table.layers = components + 1;
         table.values = buildTripleProductTable(table.values, target.shOrder, size, target.mean, target.basis);
-        table.attributes["components"] = std::to_string(components);
         table.attributes["pcaHash"] = target.madeFrom.at(kPca);
     }
     return table;

@@ -42,8 +42,7 @@ NormalTable LiveLight::lightCosineTable(const std::vector<double>& weights, doub
     table.attributes = {{"environmentName", names},
                         {"environmentHash", hashes},
                         {"rotationDeg", fmt::format("{:.9g}", rotationRad * 180 / std::numbers::pi)},
-                        {"cosineBands", std::to_string(kTableCosineBands)},
-                        {"shOrder", std::to_string(shOrder_)}};
+                        {"cosineBands", std::to_string(kTableCosineBands)}};
     return table;
 }
 
@@ -54,7 +53,6 @@ NormalTable LiveLight::tripleProductTable(const std::vector<double>& weights, do
     table.kind = TableKind::TripleProduct;
     table.layers = pca.components + 1;
     table.values = buildTripleProductTable(table.values, shOrder_, tableSize_, pca.mean, pca.basis);
-    table.attributes["components"] = std::to_string(pca.components);
     return table;
 }
 
