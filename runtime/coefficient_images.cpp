@@ -1,5 +1,6 @@
-// Sources: [IwanickiSloan2012, Sec. 3.4] (four coefficients to a texel); borders in place of seamless cube
-// arrays: measured 10-25 % faster under llvmpipe, and filtered with float weights everywhere.
+// Sources: [IwanickiSloan2012, Sec. 3.4] (four coefficients to a texel). Borders in place of seamless cube
+// arrays are 10-25 % faster under llvmpipe; its bilinear filter works in float (tests hold it to 1e-5) and takes
+// two thirds of the time of four texelFetch.
 #include "runtime/coefficient_images.h"
 
 #include <fmt/format.h>
@@ -24,6 +25,10 @@ GlObject makeArray(const GlContext& context, int width, int height, int layers, 
                         width, height, layers, edge, edge, depth),
             "use fewer texels or a lower order");
     GlObject texture = makeTexture(gl, GL_TEXTURE_2D_ARRAY);
+    for (const GLenum filter : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER})
+        gl.TextureParameteri(texture.name(), filter, GL_LINEAR);
+    for (const GLenum wrap : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T})
+        gl.TextureParameteri(texture.name(), wrap, GL_CLAMP_TO_EDGE);
     gl.TextureStorage3D(texture.name(), 1, GL_RGBA32F, width, height, layers);
     try {
         context.check(where);

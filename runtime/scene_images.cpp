@@ -56,18 +56,9 @@ GlObject uploadTexture(const GlContext& context, const SceneTexture& source, boo
             "scale it down");
     const int levels = int(std::bit_width(unsigned(std::max(image.width, image.height))));
     GlObject texture = makeTexture(gl, GL_TEXTURE_2D);
-    if (srgb) {
-        gl.TextureStorage2D(texture.name(), levels, GL_SRGB8_ALPHA8, image.width, image.height);
-        gl.TextureSubImage2D(texture.name(), 0, 0, 0, image.width, image.height, GL_RGBA, GL_UNSIGNED_BYTE,
-                             image.pixels.data());
-    } else {
-        // 16 bits, because software rendering filters 8-bit textures to 8 bits: half-degree steps in normals.
-        std::vector<uint16_t> wide(image.pixels.size());
-        std::ranges::transform(image.pixels, wide.begin(), [](uint8_t v) { return uint16_t(v * 257); });
-        gl.TextureStorage2D(texture.name(), levels, GL_RGBA16, image.width, image.height);
-        gl.TextureSubImage2D(texture.name(), 0, 0, 0, image.width, image.height, GL_RGBA, GL_UNSIGNED_SHORT,
-                             wide.data());
-    }
+    gl.TextureStorage2D(texture.name(), levels, srgb ? GL_SRGB8_ALPHA8 : GL_RGBA8, image.width, image.height);
+    gl.TextureSubImage2D(texture.name(), 0, 0, 0, image.width, image.height, GL_RGBA, GL_UNSIGNED_BYTE,
+                         image.pixels.data());
     gl.GenerateTextureMipmap(texture.name());
     context.check(where);
     return texture;

@@ -15,32 +15,9 @@ uniform ivec2 gridSize;
 layout(location = 0) out vec4 outRadiance;
 layout(location = 1) out vec4 outIrradiance;
 
-// Filtering is done here: hardware filters with 8 bits of weight on many GPUs, and the four texels are the same
-// in all layers.
-struct Taps {
-    ivec2 from, to;  // opposite corners
-    vec4 weights;    // of (from.x, from.y), (to.x, from.y), (from.x, to.y), (to.x, to.y)
-};
-
-vec4 bilinearWeights(vec2 f) {
-    return vec4((1.0 - f.x) * (1.0 - f.y), f.x * (1.0 - f.y), (1.0 - f.x) * f.y, f.x * f.y);
-}
-
-vec4 filtered(sampler2DArray image, Taps taps, int layer) {
-    return taps.weights.x * texelFetch(image, ivec3(taps.from, layer), 0) +
-           taps.weights.y * texelFetch(image, ivec3(taps.to.x, taps.from.y, layer), 0) +
-           taps.weights.z * texelFetch(image, ivec3(taps.from.x, taps.to.y, layer), 0) +
-           taps.weights.w * texelFetch(image, ivec3(taps.to, layer), 0);
-}
-
-Taps tableTaps(vec2 point) {
-    // From face texels (centres at half-integers) to bordered texels: + 1; to tap indices: - 1/2.
-    const vec2 texel = (point * 0.5 + 0.5) * float(tableSize) + 0.5;
-    Taps taps;
-    taps.from = min(ivec2(texel), ivec2(tableSize));
-    taps.to = taps.from + 1;
-    taps.weights = bilinearWeights(texel - vec2(taps.from));
-    return taps;
+/// Image point in [0, 1]² of a point in [-1, 1]² of a face, which lies within a border of one texel.
+vec2 borderedPoint(vec2 facePoint) {
+    return ((facePoint * 0.5 + 0.5) * float(tableSize) + 1.0) / float(tableSize + 2);
 }
 
 #ifdef PER_VERTEX
@@ -67,16 +44,11 @@ vec4 coefficientsAt(Points points, int layer) {
            points.weights.z * texelFetch(coefficients, ivec3(points.corner[2], layer), 0);
 }
 #else
-#define Points Taps
+#define Points vec2
 
-Points pointsAt(ivec2 pixel, vec4 place) {
-    const vec2 texel = place.zw * vec2(gridSize) - 0.5;
-    const vec2 base = floor(texel);
-    return Taps(clamp(ivec2(base), ivec2(0), gridSize - 1), clamp(ivec2(base) + 1, ivec2(0), gridSize - 1),
-                bilinearWeights(texel - base));
-}
+Points pointsAt(ivec2 pixel, vec4 place) { return place.zw; }
 
-vec4 coefficientsAt(Points points, int layer) { return filtered(coefficients, points, layer); }
+vec4 coefficientsAt(Points point, int layer) { return textureLod(coefficients, vec3(point, layer), 0.0); }
 #endif
 
 void main() {
@@ -84,16 +56,16 @@ void main() {
     const Points points = pointsAt(pixel, texelFetch(places, pixel, 0));
     vec2 facePoint;
     const int face = cubeFace(texelFetch(normals, pixel, 0).xyz, facePoint);
-    const Taps normal = tableTaps(facePoint);
+    const vec2 normal = borderedPoint(facePoint);
     vec3 irradiance = vec3(0.0);
 #ifdef WITH_MEAN
-    irradiance = filtered(table, normal, 18 * layers + face).rgb;
+    irradiance = textureLod(table, vec3(normal, 18 * layers + face), 0.0).rgb;
 #endif
     for (int i = 0; i < layers; ++i) {
         const vec4 k = coefficientsAt(points, i);
-        irradiance += vec3(dot(k, filtered(table, normal, 6 * i + face)),
-                           dot(k, filtered(table, normal, 6 * (layers + i) + face)),
-                           dot(k, filtered(table, normal, 6 * (2 * layers + i) + face)));
+        irradiance += vec3(dot(k, textureLod(table, vec3(normal, 6 * i + face), 0.0)),
+                           dot(k, textureLod(table, vec3(normal, 6 * (layers + i) + face), 0.0)),
+                           dot(k, textureLod(table, vec3(normal, 6 * (2 * layers + i) + face), 0.0)));
     }
     // Measured as it is; shown without the negative lobes that truncation leaves in the dark.
     outIrradiance = vec4(irradiance, 1.0);
