@@ -27,8 +27,14 @@ std::string systemMessage() { return std::generic_category().message(errno); }
 }  // namespace
 
 AtomicFile::AtomicFile(fs::path destination) : destination_(std::move(destination)) {
-    if (fs::is_directory(destination_))
-        throw OutputError(destination_.string(), "is a directory", "name a file");
+    std::error_code ignored;
+    // Through links: it is the file they point to that is replaced.
+    if (fs::is_symlink(destination_, ignored)) destination_ = fs::weakly_canonical(destination_, ignored);
+    const fs::file_status status = fs::status(destination_, ignored);
+    if (fs::is_directory(status)) throw OutputError(destination_.string(), "is a directory", "name a file");
+    // Renaming over a device would replace it, /dev/null included.
+    if (fs::exists(status) && !fs::is_regular_file(status))
+        throw OutputError(destination_.string(), "is a device or pipe", "name a file");
     temporary_ = destination_;
     temporary_ += fmt::format("{}{}-{}", kMarker, ::getpid(), gCounter++);
     const int file = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
@@ -78,8 +84,8 @@ int removeStaleTemporaries(const fs::path& directory) {
         const size_t at = name.rfind(kMarker);
         if (at == std::string::npos) continue;
         const pid_t owner = static_cast<pid_t>(std::atoi(name.c_str() + at + kMarker.size()));
-        if (owner > 0 && owner != ::getpid() && ::kill(owner, 0) == 0) continue;
-        if (owner == ::getpid()) continue;
+        // EPERM: the process lives, and is another user's.
+        if (owner > 0 && (owner == ::getpid() || ::kill(owner, 0) == 0 || errno == EPERM)) continue;
         std::error_code ignored;
         if (fs::remove_all(entry.path(), ignored) > 0) ++removed;
     }

@@ -15,8 +15,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// Handbook of keys: snake_case, as all machine-readable output of the project, but for the two names that
-// identify the format.
 constexpr const char* kFormat = "prt-bundle";
 
 [[noreturn]] void throwDamaged(const std::string& where, const std::string& what) {
