@@ -14,19 +14,16 @@
 namespace prt {
 namespace {
 
-// Beyond this the recurrences lose more than 1e-5 of the largest value in float.
-constexpr int kMaxFloatShOrder = 10;
-
-template <typename T, typename Out>
-void evalScalar(int shOrder, T x, T y, T z, Out* out) {
+template <typename T>
+void evalScalar(int shOrder, T x, T y, T z, T* out) {
     const LegendreRecurrence<T>& t = legendreRecurrence<T>();
     T cosPart = 1, sinPart = 0;
     for (int m = 0; m < shOrder; ++m) {
         T before = 0, here = t.diagonal[m];
         for (int l = m;;) {
             // For m = 0 the first store is overwritten by the second.
-            out[shIndex(l, -m)] = Out(here * sinPart);
-            out[shIndex(l, m)] = Out(here * cosPart);
+            out[shIndex(l, -m)] = here * sinPart;
+            out[shIndex(l, m)] = here * cosPart;
             if (++l >= shOrder) break;
             const int i = legendreIndex(l, m);
             const T next = t.rise[i] * z * here - t.fall[i] * before;
@@ -49,10 +46,7 @@ void checkOrder(int shOrder) {
 void evalSh(int shOrder, const Vec3f& direction, std::span<float> out) {
     checkOrder(shOrder);
     PRT_CHECK_EQ(out.size(), size_t(shCount(shOrder)));
-    if (shOrder <= kMaxFloatShOrder)
-        evalScalar<float>(shOrder, direction.x(), direction.y(), direction.z(), out.data());
-    else
-        evalScalar<double>(shOrder, direction.x(), direction.y(), direction.z(), out.data());
+    evalScalar<float>(shOrder, direction.x(), direction.y(), direction.z(), out.data());
 }
 
 void evalSh(int shOrder, const Vec3d& direction, std::span<double> out) {

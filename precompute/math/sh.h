@@ -30,7 +30,8 @@ constexpr int shOrderFromCount(size_t count) {
     return 0;
 }
 
-/// Evaluates all basis functions in one direction.
+/// Evaluates all basis functions in one direction. In float a function of band l errs by at most 5e-6 of the
+/// largest value its band has, sqrt((2l + 1) / 4π), to the last band; in double by 1e-14.
 /// @param shOrder    1..kMaxShOrder
 /// @param direction  unit
 /// @param out        [n²]
@@ -39,7 +40,7 @@ constexpr int shOrderFromCount(size_t count) {
 void evalSh(int shOrder, const Vec3f& direction, std::span<float> out);
 void evalSh(int shOrder, const Vec3d& direction, std::span<double> out);
 
-/// Evaluates many directions.
+/// Evaluates many directions, with the precision of evalSh in float.
 /// @param out  [N×n²], one row per direction
 void evalShBatch(int shOrder, std::span<const Vec3f> directions, std::span<float> out);
 

@@ -13,38 +13,35 @@ namespace {
 
 // More than 16, or GCC unrolls the loops over lanes completely before it could vectorise them.
 constexpr int kLanes = 32;
-constexpr int kMaxFloatShOrder = 10;  // as in evalSh: above it the recurrences run in double
 
 /// One function pair ±m: q = (rise z) one − fall two, and its products with the two parts of (x + iy)^m.
-template <typename T>
-[[gnu::always_inline]] inline void evalStep(T rise, T fall, const T* __restrict z, const T* __restrict one,
-                                            const T* __restrict two, const T* __restrict cosPart,
-                                            const T* __restrict sinPart, T* __restrict q,
-                                            float* __restrict outCos, float* __restrict outSin) {
+[[gnu::always_inline]] inline void evalStep(float rise, float fall, const float* __restrict z,
+                                            const float* __restrict one, const float* __restrict two,
+                                            const float* __restrict cosPart, const float* __restrict sinPart,
+                                            float* __restrict q, float* __restrict outCos,
+                                            float* __restrict outSin) {
     for (int k = 0; k < kLanes; ++k) {
-        const T value = rise * z[k] * one[k] - fall * two[k];
+        const float value = rise * z[k] * one[k] - fall * two[k];
         q[k] = value;
-        outSin[k] = float(value * sinPart[k]);
-        outCos[k] = float(value * cosPart[k]);
+        outSin[k] = value * sinPart[k];
+        outCos[k] = value * cosPart[k];
     }
 }
 
-template <typename T>
-[[gnu::always_inline]] inline void evalDiagonal(T diagonal, const T* __restrict cosPart,
-                                                const T* __restrict sinPart, T* __restrict q,
+[[gnu::always_inline]] inline void evalDiagonal(float diagonal, const float* __restrict cosPart,
+                                                const float* __restrict sinPart, float* __restrict q,
                                                 float* __restrict outCos, float* __restrict outSin) {
     for (int k = 0; k < kLanes; ++k) {
         q[k] = diagonal;
-        outSin[k] = float(diagonal * sinPart[k]);
-        outCos[k] = float(diagonal * cosPart[k]);
+        outSin[k] = diagonal * sinPart[k];
+        outCos[k] = diagonal * cosPart[k];
     }
 }
 
 /// (c', s') = (x + iy) (c + is).
-template <typename T>
-[[gnu::always_inline]] inline void raisePower(const T* __restrict x, const T* __restrict y,
-                                              const T* __restrict c, const T* __restrict s,
-                                              T* __restrict cNext, T* __restrict sNext) {
+[[gnu::always_inline]] inline void raisePower(const float* __restrict x, const float* __restrict y,
+                                              const float* __restrict c, const float* __restrict s,
+                                              float* __restrict cNext, float* __restrict sNext) {
     for (int k = 0; k < kLanes; ++k) {
         cNext[k] = x[k] * c[k] - y[k] * s[k];
         sNext[k] = x[k] * s[k] + y[k] * c[k];
@@ -52,13 +49,12 @@ template <typename T>
 }
 
 /// @param xyz  [3][kLanes]   @param out  [n²][kLanes]
-template <typename T>
-[[gnu::always_inline]] inline void evalBlock(const LegendreRecurrence<T>& t, int shOrder,
-                                             const T* __restrict xyz, float* __restrict out) {
-    alignas(64) T q[legendreCount(kMaxShOrder)][kLanes];
-    alignas(64) T cosPart[kMaxShOrder][kLanes], sinPart[kMaxShOrder][kLanes];
+PRT_TARGET_CLONES void evalBlock(const LegendreRecurrence<float>& t, int shOrder, const float* __restrict xyz,
+                                 float* __restrict out) {
+    alignas(64) float q[legendreCount(kMaxShOrder)][kLanes];
+    alignas(64) float cosPart[kMaxShOrder][kLanes], sinPart[kMaxShOrder][kLanes];
     alignas(64) float unused[kLanes];  // where the sine part of m = 0 goes
-    const T *x = xyz, *y = xyz + kLanes, *z = xyz + 2 * kLanes;
+    const float *x = xyz, *y = xyz + kLanes, *z = xyz + 2 * kLanes;
     for (int k = 0; k < kLanes; ++k) {
         cosPart[0][k] = 1;
         sinPart[0][k] = 0;
@@ -69,24 +65,15 @@ template <typename T>
         float* const middle = out + shIndex(l, 0) * kLanes;
         for (int m = 0; m < l; ++m) {
             const int i = legendreIndex(l, m);
-            const T* one = q[legendreIndex(l - 1, m)];
+            const float* one = q[legendreIndex(l - 1, m)];
             // fall is 0 where there is no second function below.
-            const T* two = m < l - 1 ? q[legendreIndex(l - 2, m)] : one;
+            const float* two = m < l - 1 ? q[legendreIndex(l - 2, m)] : one;
             evalStep(t.rise[i], t.fall[i], z, one, two, cosPart[m], sinPart[m], q[i], middle + m * kLanes,
                      m > 0 ? middle - m * kLanes : unused);
         }
         evalDiagonal(t.diagonal[l], cosPart[l], sinPart[l], q[legendreIndex(l, l)], middle + l * kLanes,
                      l > 0 ? middle - l * kLanes : unused);
     }
-}
-
-PRT_TARGET_CLONES void evalBlockFloat(const LegendreRecurrence<float>& t, int shOrder, const float* xyz,
-                                      float* out) {
-    evalBlock<float>(t, shOrder, xyz, out);
-}
-PRT_TARGET_CLONES void evalBlockDouble(const LegendreRecurrence<double>& t, int shOrder, const double* xyz,
-                                       float* out) {
-    evalBlock<double>(t, shOrder, xyz, out);
 }
 
 /// rows[k·columns + i] = lanes[i·kLanes + k] for k < rowCount.
@@ -114,34 +101,25 @@ void transposeBlock(const float* lanes, int columns, int rowCount, float* rows) 
     }
 }
 
-template <typename T>
-void evalBatch(int shOrder, std::span<const Vec3f> directions, float* out,
-               void (*evalLanes)(const LegendreRecurrence<T>&, int, const T*, float*)) {
-    const LegendreRecurrence<T>& t = legendreRecurrence<T>();
-    const int columns = shCount(shOrder);
-    alignas(64) T xyz[3 * kLanes];
-    alignas(64) float lanes[shCount(kMaxShOrder) * kLanes];
-    for (size_t first = 0; first < directions.size(); first += kLanes) {
-        const int n = int(std::min<size_t>(kLanes, directions.size() - first));
-        for (int k = 0; k < kLanes; ++k) {
-            const Vec3f& d = directions[first + size_t(std::min(k, n - 1))];
-            for (int axis = 0; axis < 3; ++axis) xyz[axis * kLanes + k] = T(d[axis]);
-        }
-        evalLanes(t, shOrder, xyz, lanes);
-        transposeBlock(lanes, columns, n, out + first * size_t(columns));
-    }
-}
-
 }  // namespace
 
 void evalShBatch(int shOrder, std::span<const Vec3f> directions, std::span<float> out) {
     PRT_CHECK_LE(1, shOrder);
     PRT_CHECK_LE(shOrder, kMaxShOrder);
     PRT_CHECK_EQ(out.size(), directions.size() * size_t(shCount(shOrder)));
-    if (shOrder <= kMaxFloatShOrder)
-        evalBatch<float>(shOrder, directions, out.data(), &evalBlockFloat);
-    else
-        evalBatch<double>(shOrder, directions, out.data(), &evalBlockDouble);
+    const LegendreRecurrence<float>& t = legendreRecurrence<float>();
+    const int columns = shCount(shOrder);
+    alignas(64) float xyz[3 * kLanes];
+    alignas(64) float lanes[shCount(kMaxShOrder) * kLanes];
+    for (size_t first = 0; first < directions.size(); first += kLanes) {
+        const int n = int(std::min<size_t>(kLanes, directions.size() - first));
+        for (int k = 0; k < kLanes; ++k) {
+            const Vec3f& d = directions[first + size_t(std::min(k, n - 1))];
+            for (int axis = 0; axis < 3; ++axis) xyz[axis * kLanes + k] = d[axis];
+        }
+        evalBlock(t, shOrder, xyz, lanes);
+        transposeBlock(lanes, columns, n, out.data() + first * size_t(columns));
+    }
 }
 
 }  // namespace prt
