@@ -92,7 +92,8 @@ class BoxIntegral {
 // Rings of nearly square cells, all of the same area; each ring starts at another longitude, so that cell
 // edges do not line up along planes of symmetry of the scene.
 std::vector<Cell> baseCells(int baseCount) {
-    const int rings = std::max(2, int(std::lround(std::sqrt(kPi * baseCount / 4))));
+    // An even number: the horizon of level ground lies between two rings, not through the centres of one.
+    const int rings = 2 * std::max(1, int(std::lround(std::sqrt(kPi * baseCount / 4) / 2)));
     std::vector<int> cellsOfRing(static_cast<size_t>(rings));
     int total = 0;
     for (int r = 0; r < rings; ++r) {
