@@ -1,5 +1,6 @@
-// Leading eigenvectors of a symmetric matrix: implicitly restarted Lanczos (Spectra) for the first few, a
-// full decomposition (Eigen) when most are wanted or when Lanczos' answer does not stand its checks.
+// Leading eigenvectors of a symmetric matrix: implicitly restarted Lanczos [Sorensen1992], by Spectra, for
+// the first few, a full decomposition (Eigen) when most are wanted or when Lanczos' answer does not stand its
+// checks.
 #include "compress/leading_vectors.h"
 
 #include <Spectra/MatOp/DenseSymMatProd.h>
