@@ -63,8 +63,9 @@ void AtlasBuilder::pack(Layout& layout, double density) const {
     layout.split += splitOverlaps(mesh_, layout.charts, layout.faces, layout.shapes, density);
     for (int i = 0; i < kMostRepacks; ++i) {
         throwIfInterrupted();
+        ejectLeaningFaces(mesh_, layout.charts, kLargestLeanDeg);  // pieces have mean normals of their own
         project(layout);
-        layout.packing = packCharts(layout.shapes, texels_, gutter_);
+        layout.packing = packCharts(mesh_, layout.faces, layout.shapes, texels_, gutter_);
         if (layout.packing.texelsPerUnit == 0) return;
         if (layout.packing.upright)
             for (ChartShape& shape : layout.shapes) shape = turned(shape);

@@ -60,8 +60,7 @@ class Grower {
     void growOne(uint32_t seed, uint32_t chart);
     void relax();
     bool inCone(uint32_t face, const Vec3d& mean) const {
-        const Vec3d n = mesh_.normal[face].cast<double>();
-        return n.isZero(0.0) || n.dot(mean) >= cosCone_ * mean.norm();
+        return withinCone(mesh_.normal[face], mean, cosCone_);
     }
     template <class Visit>
     void eachNeighbour(uint32_t face, const Visit& visit) const {
@@ -236,8 +235,7 @@ void ejectLeaningFaces(const AtlasMesh& mesh, Charts& charts, double angleDeg) {
         for (uint32_t c : charts.ofFace) ++facesLeft[c];
         for (uint32_t f = 0; f < mesh.faces(); ++f) {
             const uint32_t c = charts.ofFace[f];
-            const Vec3d n = mesh.normal[f].cast<double>();
-            if (n.isZero(0.0) || facesLeft[c] == 1 || n.dot(mean[c]) >= limit * mean[c].norm()) continue;
+            if (facesLeft[c] == 1 || withinCone(mesh.normal[f], mean[c], limit)) continue;
             --facesLeft[c];
             charts.ofFace[f] = before + c;
             changed = true;

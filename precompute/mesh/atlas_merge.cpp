@@ -53,11 +53,8 @@ class Merger {
 
   private:
     bool allWithin(uint32_t chart, const Vec3d& mean) const {
-        const double limit = cosLean_ * mean.norm();
-        for (uint32_t f = head_[chart]; f != kNone; f = next_[f]) {
-            const Vec3d n = mesh_.normal[f].cast<double>();
-            if (!n.isZero(0.0) && n.dot(mean) < limit) return false;
-        }
+        for (uint32_t f = head_[chart]; f != kNone; f = next_[f])
+            if (!withinCone(mesh_.normal[f], mean, cosLean_)) return false;
         return true;
     }
 

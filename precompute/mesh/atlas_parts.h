@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "precompute/io/scene.h"
@@ -41,6 +42,12 @@ struct ChartFaces {
     }
 };
 ChartFaces facesByChart(const Charts& charts);
+
+/// Whether a face leans no more than the angle of that cosine from a mean normal; faces without area do not.
+inline bool withinCone(const Vec3f& normal, const Vec3d& mean, double cosine) {
+    const double length = mean.norm();
+    return normal.isZero(0.0f) || (length > 0 && normal.cast<double>().dot(mean) >= cosine * length);
+}
 
 /// Area-weighted mean normals, not normalised.
 std::vector<Vec3d> meanNormals(const AtlasMesh& mesh, const Charts& charts);
@@ -91,7 +98,8 @@ struct Packing {
     std::vector<int> x, y;     ///< [charts] texel of the shape's low corner
 };
 /// The fullest packing that fits.
-Packing packCharts(const std::vector<ChartShape>& shapes, int texels, int gutter);
+Packing packCharts(const AtlasMesh& mesh, const ChartFaces& faces, const std::vector<ChartShape>& shapes,
+                   int texels, int gutter);
 /// Turns by 90° in the plane.
 ChartShape turned(const ChartShape& shape);
 

@@ -156,7 +156,7 @@ std::vector<ChartShape> projectCharts(const AtlasMesh& mesh, const Charts& chart
 }
 
 bool splitWastefulCharts(const AtlasMesh& mesh, Charts& charts, double texelsPerUnit, int texels) {
-    constexpr double kPoorFill = 0.55, kWasteShare = 0.004, kWorthwhile = 0.8;
+    constexpr double kPoorFill = 0.65, kWasteShare = 0.001, kWorthwhile = 0.8;
     const ChartFaces faces = facesByChart(charts);
     const std::vector<ChartShape> shapes = projectCharts(mesh, charts, faces);
     const double scale = texelsPerUnit * texelsPerUnit / (double(texels) * texels);
