@@ -20,7 +20,7 @@ namespace {
 
 constexpr size_t kBlockRows = 1024;
 // Rows that one task sums: their partial sums are added in order, whatever the number of threads.
-constexpr size_t kTaskRows = 64 * kBlockRows;
+constexpr size_t kTaskRows = 16 * kBlockRows;
 
 using RowMatrixXf = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 

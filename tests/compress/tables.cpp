@@ -247,10 +247,10 @@ TEST(LightCosineTable, MoreBandsOfLightThanNeededChangeNothing) {
 
 TEST(LightCosineTable, DoesNotDependOnThreads) {
     const EnvironmentSh light = skyLight(tableEnvironmentShOrder(6));
+    const std::vector<float> all = buildLightCosineTable(light, 6, 17);
     setThreadCount(1);
-    const std::vector<float> one = buildLightCosineTable(light, 6, 17);
+    EXPECT_EQ(buildLightCosineTable(light, 6, 17), all);
     setThreadCount(0);
-    EXPECT_EQ(one, buildLightCosineTable(light, 6, 17));
 }
 
 TEST(LightCosineTable, EverySizeHasItsTexelsAtTheirCentres) {
