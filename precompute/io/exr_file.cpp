@@ -103,10 +103,8 @@ Imf::Header makeHeader(const ExrPartOut& part, const ExrPartOut& first, bool mul
     const Imath::Box2i display(Imath::V2i(0, 0), Imath::V2i(first.width - 1, first.height - 1));
     const Imath::Box2i data(Imath::V2i(0, 0), Imath::V2i(part.width - 1, part.height - 1));
     Imf::Header header(display, data, 1, Imath::V2f(0, 0), 1, Imf::INCREASING_Y, Imf::ZIP_COMPRESSION);
-    if (multiPart) {
-        header.setName(part.name);
-        header.setType(Imf::SCANLINEIMAGE);
-    }
+    header.setType(Imf::SCANLINEIMAGE);
+    if (multiPart) header.setName(part.name);
     for (const auto& [name, value] : part.attributes.strings)
         header.insert(name, Imf::StringAttribute(value));
     for (const auto& [name, value] : part.attributes.ints) header.insert(name, Imf::IntAttribute(value));
