@@ -142,9 +142,9 @@ PrecomputeReport runPrecompute(const PrecomputeSettings& settings) {
     checkSettings(settings);
     const Stopwatch watch;
     PrecomputeReport report;
-    const std::string sourceHash = xxh3HexOfFile(settings.meshPath);
     LoadMeshReport loadReport;
     Scene scene = loadMesh(settings.meshPath, settings.load, &loadReport);
+    const std::string sourceHash = xxh3HexOfFile(settings.meshPath);
     report.repairs = loadReport.counts;
     report.triangles = scene.triangleCount();
     // Opened before the long work, so that a place that cannot be written is found out at once.
