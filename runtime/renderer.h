@@ -1,4 +1,5 @@
-// Draws a bundle's mesh, lit through tables, into float images.
+// Draws a bundle's mesh, lit through tables, into float images. Backs of triangles are not drawn, unless
+// their material is double-sided. One sample per pixel, at its centre.
 #pragma once
 
 #include <memory>
@@ -22,8 +23,10 @@ struct RenderOptions {
 };
 
 struct RenderedFrame {
-    FloatImage radiance;    ///< 3 channels: albedo/π·E; background where nothing is seen
-    FloatImage irradiance;  ///< 3 channels: E; 0 where nothing is seen
+    FloatImage radiance;  ///< 3 channels: albedo/π·E; background where nothing is seen
+    /// 3 channels: E as the series gives it, slightly negative in places (radiance counts those as 0); 0
+    /// where nothing is seen
+    FloatImage irradiance;
 };
 
 class Renderer {
