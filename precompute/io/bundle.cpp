@@ -277,6 +277,8 @@ struct BundleTransaction::State {
         for (const Staged& entry : staged) {
             const fs::path destination = directory / entry.file.name;
             Renamed step{destination, {}};
+            if (fs::is_directory(destination))
+                throw OutputError(destination.string(), "is a directory where a file should go", "remove it");
             if (fs::exists(destination)) {
                 step.backup = temporaryFor(destination, kBackupSuffix);
                 // A link leaves the old file in place until the new one replaces it; not all file systems

@@ -38,9 +38,11 @@ class GlbWriter {
     }
 
     /// @return index of the new buffer view
-    int addView(const void* bytes, size_t size, int target) {
+    int addView(const void* bytes, size_t size, int target, size_t stride = 0) {
         pad(binary_, '\0');
         Json view{{"buffer", 0}, {"byteOffset", binary_.size()}, {"byteLength", size}};
+        // Asked for where several accessors share a view.
+        if (stride != 0) view["byteStride"] = stride;
         if (target != 0) view["target"] = target;
         binary_.append(static_cast<const char*>(bytes), size);
         json_["bufferViews"].push_back(std::move(view));
@@ -59,7 +61,8 @@ class GlbWriter {
 
     template <class Vector>
     int addAttributeView(const std::vector<Vector>& values) {
-        return values.empty() ? -1 : addView(values.data(), values.size() * sizeof(Vector), kArrayBuffer);
+        if (values.empty()) return -1;
+        return addView(values.data(), values.size() * sizeof(Vector), kArrayBuffer, sizeof(Vector));
     }
 
     void addAttribute(Json& attributes, const char* name, int view, const ScenePrimitive& primitive,

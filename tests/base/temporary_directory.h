@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <fstream>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -39,5 +40,11 @@ class TemporaryDirectory {
   private:
     std::filesystem::path path_;
 };
+
+/// Writes a file anew. Truncating an old one would make some file systems flush each time.
+inline void rewriteFile(const std::string& path, const std::string& bytes) {
+    std::filesystem::remove(path);
+    std::ofstream(path, std::ios::binary) << bytes;
+}
 
 }  // namespace prt
