@@ -76,7 +76,9 @@ TEST(FillTexels, InsideOutOfReachKeepsItsValue) {
     EXPECT_EQ(map.validity[2], Validity::Empty);  // no good value to copy
     EXPECT_EQ(map.coefficients[5], 11.0f);
 
-    const Drawing far(std::vector<std::string>{"a" + std::string(kInsideReachTexels + 5, 'A')});
+    std::string row(size_t(kInsideReachTexels) + 6, 'A');
+    row[0] = 'a';
+    const Drawing far(std::vector<std::string>{row});
     const VisibilityMap map2 = fillTexels(far.surface, far.baked, kOrder);
     EXPECT_EQ(map2.validity[kInsideReachTexels], Validity::InsideFilled);
     EXPECT_EQ(map2.validity[kInsideReachTexels + 1], Validity::Inside);
@@ -84,7 +86,9 @@ TEST(FillTexels, InsideOutOfReachKeepsItsValue) {
 
 TEST(FillTexels, GuttersTakeTheNearestGoodTexel) {
     const std::string gap(kGutterReachTexels + 3, ' ');
-    const Drawing drawing(std::vector<std::string>{"a" + gap});
+    std::string row = gap;
+    row.insert(row.begin(), 'a');
+    const Drawing drawing(std::vector<std::string>{row});
     const VisibilityMap map = fillTexels(drawing.surface, drawing.baked, kOrder);
     for (size_t x = 1; x <= gap.size(); ++x) {
         const bool reached = x <= size_t(kGutterReachTexels);
