@@ -19,6 +19,11 @@ constexpr double kExpectedUtilisation = 0.65;
 /// A packing below this share of the expected density has too many charts, and is tried again with fewer.
 constexpr double kLeastDensity = 0.6;
 constexpr int kMostRepacks = 10;
+/// Above this share of the expected density nothing else is tried.
+constexpr double kGoodDensity = 0.97;
+/// Gain in density that makes up for more seams.
+constexpr double kWorthSeams = 1.03;
+constexpr size_t kLargestRetried = 300'000;
 
 /// Charts smaller than `smallTexels`² are merged, within `leanDeg`.
 struct Coarseness {
@@ -42,7 +47,12 @@ class AtlasBuilder {
           coneDeg_(coneDeg),
           density_(std::sqrt(kExpectedUtilisation / mesh.totalArea) * texels) {}
 
+    /// The first layout dense enough, from fine to coarse segmentation; else the densest.
     Layout build() const;
+    /// Whether a layout wastes little of the atlas on gutters.
+    bool isDense(const Layout& layout) const {
+        return layout.packing.texelsPerUnit >= kLeastDensity * density_;
+    }
 
   private:
     Layout layOut(const Coarseness& coarseness) const;
@@ -94,19 +104,30 @@ Layout AtlasBuilder::build() const {
     Layout best = layOut({coneDeg_, 6, 75});
     for (const Coarseness& coarser :
          {Coarseness{std::max(coneDeg_, 70.0), 16, 78}, Coarseness{std::max(coneDeg_, 75.0), 40, 79.5}}) {
-        if (best.packing.texelsPerUnit >= kLeastDensity * density_) break;
+        if (isDense(best)) break;
         // Few charts that do not fit well (one long strip) are not helped by merging.
         if (best.charts.count < 100) break;
         Layout other = layOut(coarser);
         if (other.packing.texelsPerUnit > best.packing.texelsPerUnit) best = std::move(other);
     }
-    if (best.packing.texelsPerUnit > 0) return best;
-    const double room = best.charts.count * std::pow(gutter_ + 1.0, 2) / 0.8;
+    if (mesh_.faces() <= kLargestRetried)
+        for (double share : {0.8, 0.65}) {
+            if (best.packing.texelsPerUnit >= kGoodDensity * density_) break;
+            // A handful of large charts rarely fills a square: smaller ones may, at the price of seams.
+            Layout other = layOut({share * coneDeg_, 6, 75});
+            if (other.packing.texelsPerUnit > kWorthSeams * best.packing.texelsPerUnit)
+                best = std::move(other);
+        }
+    return best;
+}
+
+[[noreturn]] void throwNoRoom(uint32_t charts, int texels, int gutter) {
+    const double room = charts * std::pow(gutter + 1.0, 2) / 0.8;
     const int needed = int(std::ceil(std::sqrt(room) / 64)) * 64;
     throw InputError(
-        fmt::format("--texels {}", texels_),
-        fmt::format("the surface falls into {} charts, more than {}² texels hold with gutters of {}",
-                    best.charts.count, texels_, gutter_),
+        fmt::format("--texels {}", texels),
+        fmt::format("the surface falls into {} charts, more than {}² texels hold with gutters of {}", charts,
+                    texels, gutter),
         needed <= 8192 ? fmt::format("use --texels {}", needed) : "use --per-vertex");
 }
 
@@ -186,15 +207,24 @@ AtlasReport buildAtlas(Scene& scene, const AtlasOptions& options) {
         throw UsageError("cone angle", fmt::format("{} is not within 0 to 90 degrees", options.coneAngleDeg));
     if (scene.indices.empty()) throw InputError("atlas", "the mesh has no faces");
     const int gutter = std::clamp(options.gutter, 2, options.texels / 4);
+    const double cone = std::min(options.coneAngleDeg, kLargestLeanDeg);
     AtlasReport report;
-    {
-        const AtlasMesh mesh = makeAtlasMesh(scene);
+    Layout layout;
+    // Charts end at creases, unless that leaves so many that the gutters eat the atlas.
+    for (const double creaseDeg : {options.creaseAngleDeg, 180.0}) {
+        const AtlasMesh mesh = makeAtlasMesh(scene, creaseDeg);
         if (!(mesh.totalArea > 0)) throw InputError("atlas", "the mesh has no area");
-        const double cone = std::min(options.coneAngleDeg, kLargestLeanDeg);
-        const Layout layout = AtlasBuilder(mesh, options.texels, gutter, cone).build();
-        report = makeReport(mesh, layout);
-        applyLayout(scene, layout, options.texels);
+        const AtlasBuilder builder(mesh, options.texels, gutter, cone);
+        Layout next = builder.build();
+        const bool dense = builder.isDense(next);
+        if (layout.charts.count == 0 || next.packing.texelsPerUnit > layout.packing.texelsPerUnit) {
+            report = makeReport(mesh, next);
+            layout = std::move(next);
+        }
+        if (dense) break;
     }
+    if (layout.packing.texelsPerUnit == 0) throwNoRoom(layout.charts.count, options.texels, gutter);
+    applyLayout(scene, layout, options.texels);
     report.utilisation =
         double(measureCoverage(scene, options.texels).covered) / (double(options.texels) * options.texels);
     return report;

@@ -6,9 +6,10 @@
 namespace prt {
 
 struct AtlasOptions {
-    int texels = 512;          ///< edge of the square atlas, 16..8192
-    int gutter = 2;            ///< texels between charts, at least
-    double coneAngleDeg = 60;  ///< largest angle between a face and the mean normal of its chart, < 90
+    int texels = 512;            ///< edge of the square atlas, 16..8192
+    int gutter = 2;              ///< texels between charts, at least
+    double creaseAngleDeg = 40;  ///< charts end at sharper edges, where the atlas has room for that
+    double coneAngleDeg = 60;    ///< largest angle between a face and the mean normal of its chart, < 90
 };
 
 struct AtlasReport {

@@ -170,7 +170,7 @@ void Grower::relax() {
 
 }  // namespace
 
-AtlasMesh makeAtlasMesh(const Scene& scene) {
+AtlasMesh makeAtlasMesh(const Scene& scene, double creaseDeg) {
     AtlasMesh mesh{scene, {}, {}, {}, {}, 0};
     uint32_t vertices = 0;
     const std::vector<uint32_t> id = weldPositions(scene.positions, vertices);
@@ -186,6 +186,12 @@ AtlasMesh makeAtlasMesh(const Scene& scene) {
         mesh.totalArea += mesh.area[f];
     }
     mesh.twin = pairHalfEdges(corners, vertices, mesh.normal).twin;
+    const auto crease = float(std::cos(radians(creaseDeg)));
+    for (uint32_t h = 0; h < mesh.twin.size(); ++h) {
+        const uint32_t twin = mesh.twin[h];
+        if (twin == kNone || h > twin || mesh.normal[h / 3].dot(mesh.normal[twin / 3]) >= crease) continue;
+        mesh.twin[h] = mesh.twin[twin] = kNone;
+    }
     return mesh;
 }
 

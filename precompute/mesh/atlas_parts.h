@@ -26,7 +26,10 @@ struct AtlasMesh {
     size_t faces() const { return normal.size(); }
     const Vec3f& corner(uint32_t halfEdge) const { return scene.positions[scene.indices[halfEdge]]; }
 };
-AtlasMesh makeAtlasMesh(const Scene& scene);
+/// @param creaseDeg  edges sharper than this are borders: across them visibility jumps with the horizon, and
+/// a
+///                   texel that straddles one would mix both sides
+AtlasMesh makeAtlasMesh(const Scene& scene, double creaseDeg);
 
 /// A chart for every face; charts are connected over twins.
 struct Charts {
