@@ -67,7 +67,8 @@ struct ExrSource {
                 for (int x = 0; x < width; ++x) planes.back().push_back(value(x, y, int(c)));
             halves.emplace_back(planes.back().begin(), planes.back().end());
             integers.emplace_back();
-            for (float number : planes.back()) integers.back().push_back(number > 0 ? uint32_t(number) : 0);
+            if (type == Imf::UINT)
+                for (float number : planes.back()) integers.back().push_back(uint32_t(number));
         }
         for (size_t c = 0; c < names.size(); ++c) {
             const void* data = type == Imf::HALF   ? static_cast<const void*>(halves[c].data())
