@@ -163,7 +163,7 @@ SurfacePoint Rasterizer::surfacePoint(uint32_t triangle, const Vec2d& centre) co
     const UvTriangle t = uvTriangle(triangle);
     auto b = t.barycentric(centre);
     const Vec2d nearest = b[0] * t.p[0] + b[1] * t.p[1] + b[2] * t.p[2];
-    if (std::min({b[0], b[1], b[2]}) <= 0) {
+    if ((nearest - centre).squaredNorm() > 1e-18) {
         const Vec2d middle = (t.p[0] + t.p[1] + t.p[2]) / 3;
         const double toMiddle = (middle - nearest).norm();
         const double share = toMiddle > 2 * kInsetTexels ? kInsetTexels / toMiddle : 0.5;

@@ -25,8 +25,9 @@ struct TexelSurface {
 };
 
 /// Every texel that the bilinear filter can fetch for a point of a chart (conservatively: the texel square,
-/// grown by half a texel, touches a triangle) gets the point of the chart nearest to its centre in texture
-/// space: the centre itself where it lies on the chart.
+/// grown by half a texel, touches a triangle) gets the point of those triangles nearest to its centre in
+/// texture space: the centre itself where it lies on the chart, else a point of the chart's border moved
+/// inwards by 1/32 texel (at most half way to the triangle's middle). Ties go to the lowest triangle.
 TexelSurface rasterizeTexels(const Scene& scene, int width, int height);
 
 /// For texels that have no value: the nearest texel (Euclidean, in texels) that has one, itself for those
