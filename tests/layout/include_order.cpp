@@ -69,9 +69,10 @@ TEST(IncludeOrder, LibrariesIncludeOnlyWhatTheyMay) {
 
 TEST(IncludeOrder, ReferenceSharesNothingWithTheBake) {
     for (const fs::path& file : sources())
-        if (folderOf(file) == "runtime/reference")
+        if (folderOf(file) == "runtime/reference") {
             for (const std::string& include : includesOf(file))
                 EXPECT_FALSE(kForbiddenInReference.count(include)) << file << " includes " << include;
+        }
 }
 
 TEST(IncludeOrder, ThirdPartyHeadersStayOutOfPublicHeaders) {
