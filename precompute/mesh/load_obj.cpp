@@ -161,7 +161,13 @@ void convertCorners(const tinyobj::attrib_t& attrib, const std::vector<tinyobj::
 
     PolygonAppender polygons(mesh, report);
     std::vector<uint32_t> position, normal, texcoord;
-    const auto index = [](int i) { return i < 0 ? kNone : uint32_t(i); };
+    // The scan has checked what it understands; what tinyobjloader understands differently ends here.
+    const auto index = [&](int i, size_t count, bool required) {
+        if (i >= 0 ? size_t(i) >= count : required)
+            throw InputError(where, fmt::format("a face uses element {} of {}", i + 1, count),
+                             "re-export the mesh");
+        return i < 0 ? kNone : uint32_t(i);
+    };
     int fallback = -1;
     for (const tinyobj::shape_t& shape : shapes) {
         size_t first = 0;
@@ -170,9 +176,11 @@ void convertCorners(const tinyobj::attrib_t& attrib, const std::vector<tinyobj::
             const size_t corners = shape.mesh.num_face_vertices[face];
             for (size_t k = first; k < first + corners; ++k) {
                 const tinyobj::index_t& corner = shape.mesh.indices[k];
-                position.push_back(uint32_t(corner.vertex_index));
-                if (!mesh.normals.empty()) normal.push_back(index(corner.normal_index));
-                if (!mesh.uv0.empty()) texcoord.push_back(index(corner.texcoord_index));
+                position.push_back(index(corner.vertex_index, mesh.positions.size(), true));
+                if (!mesh.normals.empty())
+                    normal.push_back(index(corner.normal_index, mesh.normals.size(), false));
+                if (!mesh.uv0.empty())
+                    texcoord.push_back(index(corner.texcoord_index, mesh.uv0.size(), false));
             }
             first += corners;
             int material = shape.mesh.material_ids[face];

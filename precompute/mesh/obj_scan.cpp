@@ -71,6 +71,8 @@ void ObjScan::checkFace(std::string_view rest) {
     size_t corners = 0;
     for (std::string_view word = takeWord(rest); !word.empty() && word[0] != '#'; word = takeWord(rest)) {
         if (word == "\\") fail("a face continues on the next line, which is not read");
+        // tinyobjloader would take the next corner for its normal.
+        if (word.back() == '/') fail("a corner of a face ends in '/'");
         ++corners;
         for (size_t kind = 0; kind < 3 && !word.empty(); ++kind) {
             const size_t slash = std::min(word.find('/'), word.size());

@@ -1,6 +1,9 @@
 // One clear line for each kind of damaged file.
 #include <fstream>
 #include <iterator>
+#include <limits>
+#include <map>
+#include <random>
 
 #include "precompute/io/glb.h"
 #include "tests/mesh/mesh_files.h"
@@ -113,6 +116,8 @@ TEST_F(BadInput, ObjGarbage) {
     EXPECT_THAT(problemOf("a.obj", "v 0 zero 0\nf 1 1 1\n"), StartsWith("a.obj:1:"));
     EXPECT_THAT(problemOf("a.obj", std::string(kSquare) + "f 1 two 3\n"),
                 StartsWith("a.obj:5: a face has a vertex index that is no number"));
+    EXPECT_THAT(problemOf("a.obj", std::string(kSquare) + "vt 0 0\nf 1/1 2/1 3/\n"),
+                StartsWith("a.obj:6: a corner of a face ends in '/'"));
     std::string bytes;
     for (int i = 0; i < 4096; ++i) bytes += char((i * 7919) >> 3);
     EXPECT_THAT(problemOf("a.obj", bytes), HasSubstr("no faces"));
@@ -200,6 +205,55 @@ TEST_F(BadInput, TruncatedGlb) {
     for (size_t length :
          {size_t(0), size_t(3), size_t(11), size_t(19), whole.size() / 3, whole.size() / 2, whole.size() - 1})
         EXPECT_THAT(problemOf("a.glb", whole.substr(0, length)), StartsWith("a.glb")) << length;
+}
+
+TEST_F(BadInput, DamagedBytesAreLoadedOrRefusedButNeverWorse) {
+    std::string ply = plyWithCounts("binary_little_endian", "4", "2");
+    for (float value : {0.f, 0.f, 0.f, 1.f, 0.f, 0.f, 0.f, 1.f, 0.f, 0.f, 0.f, 1.f}) ply += rawBytes(value);
+    for (int face = 0; face < 2; ++face) {
+        ply += '\3';
+        for (int i : {0, 1, 2 + face}) ply += rawBytes(i);
+    }
+    const std::map<std::string, std::string> files{
+        {"a.obj", std::string(kSquare) +
+                      "vt 0 0\nvn 0 0 1\no part\nusemtl x\nf 1/1/1 2/1/1 3/1/1 4/1/1\nf -1 -2 -3\n"},
+        {"b.ply", ply},
+        {"c.ply", plyWithCounts("ascii", "3", "1") + "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"},
+        {"d.off", "NOFF\n3 1 0\n0 0 0 0 0 1\n1 0 0 0 0 1\n0 1 0 0 0 1\n3 0 1 2\n"},
+        {"e.stl", binaryStl({{0, 0, 0, 1, 0, 0, 0, 1, 0}}, 1)},
+        {"f.stl",
+         "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 "
+         "0\nendloop\nendfacet\nendsolid\n"}};
+    std::mt19937 random(17);
+    for (const auto& [name, sound] : files) {
+        EXPECT_EQ(problemOf(name, sound), "no error") << name;
+        for (int trial = 0; trial < 300; ++trial) {
+            std::string bytes = sound;
+            for (uint32_t k = 0; k <= random() % 3; ++k) {
+                const size_t at = random() % bytes.size();
+                switch (random() % 4) {
+                    case 0:
+                        bytes[at] = char(random());
+                        break;
+                    case 1:
+                        bytes[at] = "0129-.e/ \n"[random() % 10];
+                        break;
+                    case 2:
+                        bytes.erase(at, 1 + random() % 4);
+                        break;
+                    default:
+                        bytes.insert(at, bytes.substr(random() % bytes.size(), 1 + random() % 8));
+                }
+                if (bytes.empty()) bytes.push_back(' ');
+            }
+            try {
+                const Scene scene = load(name, bytes);
+                EXPECT_NO_THROW(validateScene(scene, name));
+            } catch (const InputError& error) {
+                EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos);
+            }
+        }
+    }
 }
 
 TEST_F(BadInput, ScenesOutOfRange) {

@@ -57,6 +57,10 @@ inline double triangleDistance(const Triangle2& a, const Triangle2& b) {
 
 /// Area of a triangle within the square |x − cx| ≤ half, |y − cy| ≤ half (Sutherland–Hodgman).
 inline double areaWithinSquare(const Triangle2& t, const Point2& centre, double half) {
+    for (size_t axis = 0; axis < 2; ++axis) {
+        const auto [low, high] = std::minmax({t[0][axis], t[1][axis], t[2][axis]});
+        if (low > centre[axis] + half || high < centre[axis] - half) return 0;
+    }
     std::vector<Point2> polygon(t.begin(), t.end());
     for (int axis = 0; axis < 2; ++axis)
         for (double side : {-1.0, 1.0}) {
