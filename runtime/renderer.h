@@ -23,10 +23,10 @@ struct RenderOptions {
 };
 
 struct RenderedFrame {
-    FloatImage radiance;  ///< 3 channels: albedo/π·E; background where nothing is seen
-    /// 3 channels: E as the series gives it, slightly negative in places (radiance counts those as 0); 0
-    /// where nothing is seen
-    FloatImage irradiance;
+    /// 3 channels: albedo/π·E; background where nothing is seen. Linear in the light, so slightly negative
+    /// where the truncated series of E is; toDisplay shows that as black.
+    FloatImage radiance;
+    FloatImage irradiance;  ///< 3 channels: E; 0 where nothing is seen
 };
 
 class Renderer {

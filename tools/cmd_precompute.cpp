@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include "precompute/math/sh.h"
+#include "precompute/visibility/bake.h"
 #include "precompute/visibility/precompute_job.h"
 #include "tools/command_line.h"
 #include "tools/commands.h"
@@ -58,7 +59,7 @@ void runPrecomputeCommand(int argc, char** argv) {
     line.integer("--texels", settings.texels, 16, 8192, "edge of the square atlas, texels");
     line.integer("--order", settings.shOrder, 1, kMaxBundleShOrder,
                  "number of SH bands n (n*n coefficients)");
-    line.integer("--rays", settings.rays, 1, 1 << 20,
+    line.integer("--rays", settings.rays, 1, kMaxBakeRays,
                  "directions over the sphere; those above a point's horizon are traced");
     line.real("--uv-scale", settings.load.uvScale, 1e-6, 1e9,
               "scene units per tile of box-projected texture coordinates, where the mesh has none");

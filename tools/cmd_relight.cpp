@@ -164,7 +164,7 @@ FloatImage radianceFromIrradiance(const std::vector<float>& irradiance, const Su
         if (surface.triangle[p] == kNoTriangle) continue;
         for (size_t c = 0; c < 3; ++c)
             image.pixels[3 * p + c] =
-                surface.albedo[p][int(c)] * std::max(0.0f, irradiance[3 * p + c]) / std::numbers::pi_v<float>;
+                surface.albedo[p][int(c)] * irradiance[3 * p + c] / std::numbers::pi_v<float>;
     }
     return image;
 }

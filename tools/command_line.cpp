@@ -47,9 +47,8 @@ void CommandLine::positionalList(const std::string& name, std::vector<std::strin
 }
 
 void CommandLine::integer(const std::string& names, int& value, int low, int high, const std::string& help) {
-    state_->app.add_option(names, value, help)
-        ->type_name(fmt::format("INTEGER in {}..{}", low, high))
-        ->capture_default_str();
+    state_->app.add_option(names, value, fmt::format("{} [{}..{}, default {}]", help, low, high, value))
+        ->type_name("INTEGER");
     state_->checks.push_back([&value, low, high, name = State::longName(names)] {
         if (value < low || value > high)
             throw UsageError(name, fmt::format("{} is outside {}..{}", value, low, high), "see --help");
@@ -58,9 +57,9 @@ void CommandLine::integer(const std::string& names, int& value, int low, int hig
 
 void CommandLine::real(const std::string& names, double& value, double low, double high,
                        const std::string& help) {
-    state_->app.add_option(names, value, help)
-        ->type_name(fmt::format("NUMBER in {:g}..{:g}", low, high))
-        ->capture_default_str();
+    state_->app
+        .add_option(names, value, fmt::format("{} [{:g}..{:g}, default {:g}]", help, low, high, value))
+        ->type_name("NUMBER");
     state_->checks.push_back([&value, low, high, name = State::longName(names)] {
         if (!(value >= low && value <= high))
             throw UsageError(name, fmt::format("{:g} is outside {:g}..{:g}", value, low, high), "see --help");
@@ -69,8 +68,8 @@ void CommandLine::real(const std::string& names, double& value, double low, doub
 
 void CommandLine::text(const std::string& names, std::string& value, const std::string& type,
                        const std::string& help, bool required) {
-    CLI::Option* option = state_->app.add_option(names, value, help)->type_name(type);
-    if (!value.empty()) option->capture_default_str();
+    const std::string text = value.empty() ? help : fmt::format("{} [default {}]", help, value);
+    CLI::Option* option = state_->app.add_option(names, value, text)->type_name(type);
     if (required) option->required();
 }
 
@@ -85,7 +84,8 @@ void CommandLine::textList(const std::string& names, std::vector<std::string>& v
 void CommandLine::choice(const std::string& names, std::string& value,
                          const std::vector<std::string>& choices, const std::string& help) {
     const std::string list = fmt::format("{}", fmt::join(choices, " | "));
-    state_->app.add_option(names, value, help)->type_name(list)->capture_default_str();
+    state_->app.add_option(names, value, fmt::format("{} [{}; default {}]", help, list, value))
+        ->type_name("NAME");
     state_->checks.push_back([&value, choices, list, name = State::longName(names)] {
         if (std::find(choices.begin(), choices.end(), value) == choices.end())
             throw UsageError(name, fmt::format("'{}' is not one of: {}", value, list), "see --help");

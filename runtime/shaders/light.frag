@@ -69,5 +69,5 @@ void main() {
     }
     // Measured as it is; shown without the negative lobes that truncation leaves in the dark.
     outIrradiance = vec4(irradiance, 1.0);
-    outRadiance = vec4(texelFetch(albedos, pixel, 0).rgb / kPi * max(irradiance, 0.0), 1.0);
+    outRadiance = vec4(texelFetch(albedos, pixel, 0).rgb / kPi * irradiance, 1.0);
 }

@@ -29,11 +29,11 @@ TEST(Options, EverySubcommandHasHelpWithDefaultsAndRanges) {
         const ProcessResult result = runPrt(folder, {command, "--help"});
         EXPECT_EQ(result.exitCode, 0) << command;
         EXPECT_TRUE(result.err.empty()) << result.err;
-        for (const char* option : {"--json", "--threads", "--quiet", "0..1024", "[0]"})
+        for (const char* option : {"--json", "--threads", "--quiet", "[0..1024, default 0]"})
             EXPECT_NE(result.out.find(option), std::string::npos) << command << " " << option;
     }
     const std::string help = runPrt(folder, {"precompute", "--help"}).out;
-    for (const char* text : {"16..8192", "[512]", "1..10", "[6]", "1..1048576", "[1024]"})
+    for (const char* text : {"[16..8192, default 512]", "[1..10, default 6]", "[1..262144, default 1024]"})
         EXPECT_NE(help.find(text), std::string::npos) << text << " in\n" << help;
 }
 
