@@ -64,14 +64,14 @@ void runInfoCommand(int argc, char** argv) {
     }
     Report report;
     report.set("bundle", path).set("format_version", kBundleFormatVersion);
-    report.setJson("conventions", bundle.section("conventions"));
-    report.set("files", files).set("bytes", total);
-    for (const std::string& name : bundle.sectionNames()) {
-        if (name == "conventions") continue;
-        report.setJson(name, bundle.section(name));
-    }
+    Report conventions;
+    for (const auto& [name, meaning] : bundle.conventions()) conventions.set(name, meaning);
+    report.set("conventions", conventions).set("files", files).set("bytes", total);
+    for (const std::string& name : bundle.sectionNames()) report.setJson(name, bundle.section(name));
     if (text) {
         fmt::print("  {:<44} {:>10.3f} MB\n", "all", double(total) * 1e-6);
+        fmt::print("\nconventions\n");
+        for (const auto& [name, meaning] : bundle.conventions()) fmt::print("  {:<22}{}\n", name, meaning);
         for (const std::string& name : bundle.sectionNames())
             fmt::print("\n{}\n{}\n", name, bundle.section(name));
     }

@@ -20,6 +20,7 @@
 #include "precompute/base/check.h"
 #include "precompute/base/error.h"
 #include "precompute/base/log.h"
+#include "precompute/io/exr_conventions.h"
 #include "precompute/io/manifest.h"
 
 namespace prt {
@@ -167,6 +168,8 @@ std::string Bundle::section(const std::string& name) const {
     const auto it = sections_.find(name);
     return it == sections_.end() ? "{}" : it->second;
 }
+
+const std::map<std::string, std::string>& Bundle::conventions() const { return fileConventions(); }
 
 std::vector<std::string> Bundle::sectionNames() const {
     std::vector<std::string> names;

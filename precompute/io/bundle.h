@@ -35,6 +35,8 @@ class Bundle {
     /// absent.
     std::string section(const std::string& name) const;
     std::vector<std::string> sectionNames() const;
+    /// Name → meaning of every convention its files follow (open() refuses bundles with others).
+    const std::map<std::string, std::string>& conventions() const;
 
     /// Why a file can't be trusted: "" when it is current; else one phrase, e.g. "made from another
     /// visibility.exr" or "changed since it was written". Compares hashes along the graph of madeFrom within

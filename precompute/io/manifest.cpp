@@ -52,6 +52,19 @@ BundleFile parseFile(const Json& json, const std::string& where) {
     return file;
 }
 
+void checkManifestConventions(const Json& json, const std::string& where) {
+    const auto conventions = json.find("conventions");
+    if (conventions == json.end() || !conventions->is_object()) throwDamaged(where, "no conventions");
+    for (const auto& [name, meaning] : fileConventions()) {
+        const auto it = conventions->find(name);
+        if (it == conventions->end() || *it != meaning)
+            throw InputError(where,
+                             fmt::format("has another {}: {}, expected \"{}\"", name,
+                                         it == conventions->end() ? "none" : it->dump(), meaning),
+                             "make the bundle again with this version of prt");
+    }
+}
+
 }  // namespace
 
 bool isBundleFileName(const std::string& name) {
@@ -78,6 +91,7 @@ Manifest parseManifest(const std::string& text, const std::string& where) {
                          fmt::format("has format version {}, this program reads {}", version->dump(),
                                      kBundleFormatVersion),
                          "make the bundle again with prt precompute");
+    checkManifestConventions(json, where);
     Manifest manifest;
     const auto files = json.find("files");
     if (files == json.end() || !files->is_array()) throwDamaged(where, "no list of files");

@@ -193,6 +193,17 @@ TEST(BadInput, WrongBundleVersion) {
     expectRefused(folder, {"compress", "box.prt"}, kInput, {"999"});
 }
 
+TEST(BadInput, BundleOfOtherConventions) {
+    Folder folder;
+    bakeBox(folder);
+    std::string manifest = slurp(folder / "box.prt/manifest.json");
+    const size_t at = manifest.find("+Y up");
+    ASSERT_NE(at, std::string::npos);
+    manifest.replace(at, 5, "+Z up");
+    folder.write("box.prt/manifest.json", manifest);
+    expectRefused(folder, {"info", "box.prt"}, kInput, {"worldAxes", "+Z up"});
+}
+
 TEST(BadInput, NotABundle) {
     Folder folder;
     expectRefused(folder, {"info", "nothing.prt"}, kInput, {"nothing.prt"});
