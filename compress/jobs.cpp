@@ -10,6 +10,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "compress/irradiance_weights.h"
 #include "compress/pca.h"
 #include "compress/tables/normal_tables.h"
 #include "precompute/base/error.h"
@@ -27,8 +28,11 @@ constexpr const char* kVisibility = "visibility.exr";
 constexpr const char* kPca = "pca.exr";
 constexpr int kMaxTableSize = 1024;
 
-std::string compressCommand(const std::string& bundle, int components) {
-    return fmt::format("prt compress {} --components {}", bundle, components);
+constexpr const char* kIrradiance = "irradiance";
+
+std::string compressCommand(const CompressSettings& settings) {
+    return fmt::format("prt compress {} --components {} --weights {}", settings.bundlePath,
+                       settings.components, settings.weights);
 }
 
 std::string hashOf(const Bundle& bundle, const std::string& name) { return bundle.find(name)->xxh3; }
@@ -46,7 +50,14 @@ void checkComponents(int components, int shOrder) {
             fmt::format("use at most {}", shCount(shOrder)));
 }
 
-PcaMap makePcaMap(const VisibilityMap& visibility, const PcaResult& pca, std::vector<float> weights) {
+void checkWeights(const std::string& weights) {
+    if (weights != kIrradiance && weights != "plain")
+        throw UsageError("--weights", fmt::format("there is no kind of weights called '{}'", weights),
+                         "use irradiance or plain");
+}
+
+PcaMap makePcaMap(const VisibilityMap& visibility, const PcaResult& pca, std::vector<float> weights,
+                  const std::string& kind) {
     PcaMap map;
     map.grid = visibility.grid;
     map.shOrder = visibility.shOrder;
@@ -58,6 +69,11 @@ PcaMap makePcaMap(const VisibilityMap& visibility, const PcaResult& pca, std::ve
     // How the visibility was projected stays true of its compressed form.
     map.attributes = visibility.attributes;
     map.attributes["explainedVariance"] = fmt::format("{:.9g}", pca.explainedVariance);
+    map.attributes["weightsFit"] = kind;
+    if (kind == kIrradiance) {
+        map.attributes["weightsConeDegrees"] = fmt::format("{:.9g}", kIrradianceConeDegrees);
+        map.attributes["weightsFloor"] = fmt::format("{:.9g}", kIrradianceFloor);
+    }
     return map;
 }
 
@@ -142,6 +158,7 @@ std::string tabulateSection(const Bundle& bundle, const TabulateSettings& settin
 
 CompressReport runCompress(const CompressSettings& settings) {
     const Stopwatch watch;
+    checkWeights(settings.weights);
     const Bundle bundle = Bundle::open(settings.bundlePath);
     bundle.require(kVisibility, "prt precompute");
     VisibilityMap visibility = readVisibilityFile(bundle.pathOf(kVisibility).string());
@@ -152,7 +169,10 @@ CompressReport runCompress(const CompressSettings& settings) {
     std::transform(visibility.validity.begin(), visibility.validity.end(), valid.begin(),
                    [](Validity validity) { return uint8_t(validity == Validity::Valid); });
     const PcaResult pca = computePca(visibility.coefficients, valid, dimension, settings.components);
-    std::vector<float> weights = projectPca(pca, visibility.coefficients, dimension);
+    std::vector<float> weights =
+        settings.weights == kIrradiance
+            ? projectPcaForIrradiance(pca, visibility.coefficients, visibility.normals, visibility.shOrder)
+            : projectPca(pca, visibility.coefficients, dimension);
     const PcaError error = pcaError(pca, visibility.coefficients, weights, valid, dimension);
     for (size_t i = 0; i < visibility.validity.size(); ++i)
         if (visibility.validity[i] == Validity::Empty)
@@ -164,25 +184,28 @@ CompressReport runCompress(const CompressSettings& settings) {
     report.explainedVariance = pca.explainedVariance;
     report.relativeRmse = error.relativeRmse;
     report.rmse = error.rmse;
+    report.irradianceRelativeRmse = irradianceRelativeRmse(pca, visibility.coefficients, weights,
+                                                           visibility.normals, valid, visibility.shOrder);
 
     throwIfInterrupted();
     BundleTransaction transaction(settings.bundlePath, false);
     const std::filesystem::path staged =
-        transaction.stage(kPca, {{kVisibility, hashOf(bundle, kVisibility)}},
-                          compressCommand(settings.bundlePath, settings.components));
-    writePcaFile(staged.string(), makePcaMap(visibility, pca, std::move(weights)));
+        transaction.stage(kPca, {{kVisibility, hashOf(bundle, kVisibility)}}, compressCommand(settings));
+    writePcaFile(staged.string(), makePcaMap(visibility, pca, std::move(weights), settings.weights));
     report.bytes = sizeOf(staged);
     report.seconds = watch.seconds();
-    const nlohmann::json section = {{"settings", {{"components", settings.components}}},
-                                    {"statistics",
-                                     {{"points", report.points},
-                                      {"explained_variance", report.explainedVariance},
-                                      {"relative_rmse", report.relativeRmse},
-                                      {"rmse", report.rmse},
-                                      {"variance", pca.variance},
-                                      {"total_variance", pca.totalVariance},
-                                      {"bytes", report.bytes},
-                                      {"seconds", report.seconds}}}};
+    const nlohmann::json section = {
+        {"settings", {{"components", settings.components}, {"weights", settings.weights}}},
+        {"statistics",
+         {{"points", report.points},
+          {"explained_variance", report.explainedVariance},
+          {"relative_rmse", report.relativeRmse},
+          {"rmse", report.rmse},
+          {"irradiance_relative_rmse", report.irradianceRelativeRmse},
+          {"variance", pca.variance},
+          {"total_variance", pca.totalVariance},
+          {"bytes", report.bytes},
+          {"seconds", report.seconds}}}};
     transaction.setSection("compress", section.dump());
     transaction.commit();
     report.seconds = watch.seconds();

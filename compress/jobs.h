@@ -9,6 +9,9 @@ namespace prt {
 struct CompressSettings {
     std::string bundlePath;
     int components = 16;  ///< 1..n²
+    /// How the weights of a point are found: "irradiance" fits the irradiance of its shading normals, "plain"
+    /// projects its coefficients.
+    std::string weights = "irradiance";
 };
 struct CompressReport {
     int components = 0;
@@ -16,11 +19,13 @@ struct CompressReport {
     double explainedVariance = 0;
     double relativeRmse = 0;  ///< of coefficients, over valid points
     double rmse = 0;
+    double irradianceRelativeRmse = 0;  ///< of coefficients in the metric of irradiance, over valid points
     double seconds = 0;
     size_t bytes = 0;  ///< of pca.exr
 };
 /// PCA of visibility.exr over valid points, weights for all points; writes pca.exr.
-/// @throws UsageError  components above n² (names the limit)   @throws InputError, OutputError
+/// @throws UsageError  components above n² (names the limit), or no such kind of weights   @throws
+/// InputError, OutputError
 CompressReport runCompress(const CompressSettings& settings);
 
 struct TabulateSettings {

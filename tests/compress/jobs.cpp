@@ -7,6 +7,7 @@
 #include <random>
 #include <sstream>
 
+#include "compress/irradiance_weights.h"
 #include "compress/pca.h"
 #include "compress/tables/normal_tables.h"
 #include "precompute/base/error.h"
@@ -32,7 +33,7 @@ VisibilityMap testVisibility(int shOrder, unsigned seed, int width = 24, int hei
     for (size_t i = 0; i < map.grid.count; ++i) {
         map.validity.push_back(Validity(i % 5));
         map.ao.push_back(0.5f);
-        map.normals.push_back(Vec3f(0, 1, 0));
+        map.normals.push_back(Vec3f(normal(random), normal(random), normal(random)).normalized());
         for (size_t k = 0; k < n2; ++k)
             map.coefficients.push_back(map.validity[i] == Validity::Empty ? 0.0f
                                                                           : normal(random) / float(k + 1));
@@ -96,20 +97,28 @@ class Jobs : public testing::Test {
     std::string bundle_;
 };
 
-TEST_F(Jobs, CompressWritesWhatTheAlgorithmSays) {
+class JobsWeights : public Jobs, public testing::WithParamInterface<const char*> {};
+INSTANTIATE_TEST_SUITE_P(Kinds, JobsWeights, testing::Values("irradiance", "plain"));
+
+TEST_P(JobsWeights, CompressWritesWhatTheAlgorithmSays) {
+    const bool isPlain = std::string(GetParam()) == "plain";
     const VisibilityMap map = testVisibility(4, 1);
     writeBundle(map);
-    const CompressReport report = runCompress({bundle_, 5});
+    const CompressReport report = runCompress({bundle_, 5, GetParam()});
     std::vector<uint8_t> valid;
     for (const Validity validity : map.validity) valid.push_back(validity == Validity::Valid);
     const PcaResult pca = computePca(map.coefficients, valid, 16, 5);
-    const std::vector<float> weights = projectPca(pca, map.coefficients, 16);
+    const std::vector<float> weights = isPlain
+                                           ? projectPca(pca, map.coefficients, 16)
+                                           : projectPcaForIrradiance(pca, map.coefficients, map.normals, 4);
 
     EXPECT_EQ(report.components, 5);
     EXPECT_EQ(report.points, map.grid.count / 5);
     EXPECT_EQ(report.explainedVariance, pca.explainedVariance);
     EXPECT_EQ(report.relativeRmse, pcaRelativeRmse(pca, map.coefficients, weights, valid, 16));
     EXPECT_GT(report.rmse, 0);
+    EXPECT_EQ(report.irradianceRelativeRmse,
+              irradianceRelativeRmse(pca, map.coefficients, weights, map.normals, valid, 4));
     EXPECT_EQ(report.bytes, fs::file_size(fs::path(bundle_) / "pca.exr"));
 
     const PcaMap read = readPcaFile(bundle_ + "/pca.exr");
@@ -119,6 +128,8 @@ TEST_F(Jobs, CompressWritesWhatTheAlgorithmSays) {
     EXPECT_EQ(read.basis, pca.basis);
     EXPECT_EQ(read.variance, pca.variance);
     EXPECT_EQ(read.attributes.at("projection"), "plain");
+    EXPECT_EQ(read.attributes.at("weightsFit"), GetParam());
+    EXPECT_EQ(read.attributes.count("weightsFloor"), isPlain ? 0u : 1u);
     for (size_t i = 0; i < map.grid.count; ++i)
         for (size_t m = 0; m < 5; ++m) {
             const float expected = map.validity[i] == Validity::Empty ? 0.0f : weights[i * 5 + m];
@@ -129,7 +140,27 @@ TEST_F(Jobs, CompressWritesWhatTheAlgorithmSays) {
     EXPECT_EQ(bundle.staleReason("pca.exr", true), "");
     EXPECT_EQ(bundle.find("pca.exr")->madeFrom.at("visibility.exr"), bundle.find("visibility.exr")->xxh3);
     EXPECT_THAT(bundle.find("pca.exr")->madeBy, testing::HasSubstr("--components 5"));
+    EXPECT_THAT(bundle.find("pca.exr")->madeBy, testing::HasSubstr(std::string("--weights ") + GetParam()));
     EXPECT_THAT(bundle.section("compress"), testing::HasSubstr("explained_variance"));
+    EXPECT_THAT(bundle.section("compress"), testing::HasSubstr("irradiance_relative_rmse"));
+    EXPECT_THAT(bundle.section("compress"), testing::HasSubstr(GetParam()));
+}
+
+TEST_F(Jobs, WeightsForIrradianceAreTheDefaultAndTradeOneErrorForTheOther) {
+    writeBundle(testVisibility(5, 14));
+    const CompressReport plain = runCompress({bundle_, 6, "plain"});
+    const auto plainBytes = contents().at("pca.exr");
+    const CompressReport fitted = runCompress({bundle_, 6});
+    EXPECT_NE(contents().at("pca.exr"), plainBytes);
+    EXPECT_EQ(runCompress({bundle_, 6, "irradiance"}).irradianceRelativeRmse, fitted.irradianceRelativeRmse);
+    EXPECT_LT(fitted.irradianceRelativeRmse, plain.irradianceRelativeRmse);
+    EXPECT_GT(fitted.relativeRmse, plain.relativeRmse);
+    EXPECT_EQ(fitted.explainedVariance, plain.explainedVariance);
+    expectRefused<UsageError>(
+        [&] {
+            runCompress({bundle_, 6, "best"});
+        },
+        {"--weights", "best", "irradiance"});
 }
 
 TEST_F(Jobs, CompressGivesTheSameBytesAgain) {
