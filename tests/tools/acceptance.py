@@ -34,7 +34,8 @@ def error(row, technique):
 
 def compare(prt, bundle, environments, camera, size="320x200"):
     words = [w for e in environments for w in ("--env", e)]
-    return prt("relight", bundle, *words, "--each", "--compare-reference", "--size", size, *camera)["environments"]
+    return prt("relight", bundle, *words, "--each", "--compare-reference", "--reference-rays", 2048, "--size", size,
+               *camera)["environments"]
 
 
 def main():
@@ -46,10 +47,10 @@ def main():
     environments = sorted((assets / "hdri").glob("*.exr"))
     normal_map = assets / "normals/0005.webp"
     scenes = {
-        "house": (ROOT / "meshes/house/house.obj", ["--texels", 512],
-                  ["--azimuth", 35, "--elevation", 16, "--distance", 0.75]),
+        "house": (ROOT / "meshes/house/house.obj", ["--texels", 1024],
+                  ["--eye=-7.5,3.4,13.5", "--target=0.2,2.3,0.5", "--fov", 38]),
         "room": (assets / "rooms/music.ply", ["--per-vertex", "--normal-map", normal_map, "--uv-scale", 0.5],
-                 ["--azimuth", 30, "--elevation", 50, "--distance", 0.9]),
+                 ["--eye=0,8.5,5", "--target=0,0.3,0.4", "--fov", 45]),
         "bunny": (assets / "models/bunny.obj", ["--texels", 512, "--normal-map", normal_map, "--uv-scale", 0.4],
                   ["--azimuth", 20, "--elevation", 15, "--distance", 0.8]),
     }
