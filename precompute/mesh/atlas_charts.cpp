@@ -168,29 +168,31 @@ void Grower::relax() {
     }
 }
 
-}  // namespace
-
-AtlasMesh makeAtlasMesh(const Scene& scene, double creaseDeg) {
-    AtlasMesh mesh{scene, {}, {}, {}, {}, 0};
+/// Faces by welded position, with borders along creases.
+HalfEdgeMesh smoothHalfEdges(const Scene& scene, std::span<const Vec3f> normals, double creaseDeg) {
     uint32_t vertices = 0;
     const std::vector<uint32_t> id = weldPositions(scene.positions, vertices);
     std::vector<uint32_t> corners(scene.indices.size());
     for (size_t h = 0; h < corners.size(); ++h) corners[h] = id[scene.indices[h]];
-    mesh.normal = faceNormals(scene.positions, scene.indices);
-    mesh.area.resize(mesh.normal.size());
-    mesh.centroid.resize(mesh.normal.size());
+    std::vector<uint32_t> twin = pairHalfEdges(corners, vertices, normals).twin;
+    cutCreases(twin, normals, float(std::cos(radians(creaseDeg))));
+    return HalfEdgeMesh(twin);
+}
+
+}  // namespace
+
+AtlasMesh makeAtlasMesh(const Scene& scene, double creaseDeg) {
+    std::vector<Vec3f> normals = faceNormals(scene.positions, scene.indices);
+    HalfEdgeMesh edges = smoothHalfEdges(scene, normals, creaseDeg);
+    std::vector<uint32_t> twin = edges.opposites();
+    AtlasMesh mesh{scene, std::move(normals), {}, {}, std::move(edges), std::move(twin), 0};
+    mesh.area.resize(mesh.faces());
+    mesh.centroid.resize(mesh.faces());
     for (uint32_t f = 0; f < mesh.faces(); ++f) {
         const Vec3f &a = mesh.corner(3 * f), &b = mesh.corner(3 * f + 1), &c = mesh.corner(3 * f + 2);
         mesh.area[f] = float(0.5 * triangleCross(a, b, c).norm());
         mesh.centroid[f] = ((a.cast<double>() + b.cast<double>() + c.cast<double>()) / 3).cast<float>();
         mesh.totalArea += mesh.area[f];
-    }
-    mesh.twin = pairHalfEdges(corners, vertices, mesh.normal).twin;
-    const auto crease = float(std::cos(radians(creaseDeg)));
-    for (uint32_t h = 0; h < mesh.twin.size(); ++h) {
-        const uint32_t twin = mesh.twin[h];
-        if (twin == kNone || h > twin || mesh.normal[h / 3].dot(mesh.normal[twin / 3]) >= crease) continue;
-        mesh.twin[h] = mesh.twin[twin] = kNone;
     }
     return mesh;
 }
@@ -214,20 +216,7 @@ std::vector<Vec3d> meanNormals(const AtlasMesh& mesh, const Charts& charts) {
 }
 
 void splitIntoConnected(const AtlasMesh& mesh, Charts& charts) {
-    DisjointSets pieces(mesh.faces());
-    for (uint32_t h = 0; h < mesh.twin.size(); ++h) {
-        const uint32_t twin = mesh.twin[h];
-        if (twin != kNone && h < twin && charts.ofFace[h / 3] == charts.ofFace[twin / 3])
-            pieces.unite(h / 3, twin / 3);
-    }
-    std::vector<uint32_t> id(mesh.faces(), kNone);
-    charts.count = 0;
-    // The representative is the lowest face of its piece, so it is met first.
-    for (uint32_t f = 0; f < mesh.faces(); ++f) {
-        const uint32_t root = pieces.find(f);
-        if (root == f) id[f] = charts.count++;
-        charts.ofFace[f] = id[root];
-    }
+    charts.ofFace = mesh.edges.components(charts.ofFace, charts.count);
 }
 
 void ejectLeaningFaces(const AtlasMesh& mesh, Charts& charts, double angleDeg) {

@@ -7,6 +7,7 @@
 
 #include "precompute/io/scene.h"
 #include "precompute/mesh/atlas.h"
+#include "precompute/mesh/half_edge_mesh.h"
 #include "precompute/mesh/topology.h"
 
 namespace prt {
@@ -21,14 +22,14 @@ struct AtlasMesh {
     std::vector<Vec3f> normal;    ///< [faces] zero where there is no area
     std::vector<float> area;      ///< [faces]
     std::vector<Vec3f> centroid;  ///< [faces]
-    std::vector<uint32_t> twin;   ///< [3×faces] as Adjacency
+    HalfEdgeMesh edges;           ///< with borders along creases
+    std::vector<uint32_t> twin;   ///< [3×faces] opposites() of it
     double totalArea = 0;
     size_t faces() const { return normal.size(); }
     const Vec3f& corner(uint32_t halfEdge) const { return scene.positions[scene.indices[halfEdge]]; }
 };
 /// @param creaseDeg  edges sharper than this are borders: across them visibility jumps with the horizon, and
-/// a
-///                   texel that straddles one would mix both sides
+///                   a texel that straddles one would mix both sides
 AtlasMesh makeAtlasMesh(const Scene& scene, double creaseDeg);
 
 /// A chart for every face; charts are connected over twins.

@@ -6,6 +6,7 @@
 
 #include "precompute/base/parallel.h"
 #include "precompute/mesh/corner_mesh.h"
+#include "precompute/mesh/half_edge_mesh.h"
 
 namespace prt {
 namespace {
@@ -28,20 +29,13 @@ std::vector<uint8_t> normalisePool(std::vector<Vec3f>& normals, LoadMeshReport& 
     return usable;
 }
 
-/// Corners of one vertex whose faces follow each other without a crease are one set.
-DisjointSets smoothFans(const CornerMesh& mesh, const Adjacency& adjacency,
-                        const std::vector<Vec3f>& faceNormal, double creaseAngleDeg) {
-    DisjointSets fans(mesh.position.size());
-    const auto threshold =
-        float(std::cos(std::clamp(creaseAngleDeg, 0.0, 180.0) * std::numbers::pi / 180) - 1e-6);
-    for (uint32_t h = 0; h < mesh.position.size(); ++h) {
-        const uint32_t twin = adjacency.twin[h];
-        if (twin == kNone || twin < h) continue;
-        if (faceNormal[h / 3].dot(faceNormal[twin / 3]) < threshold) continue;
-        fans.unite(h, nextCorner(twin));
-        fans.unite(nextCorner(h), twin);
-    }
-    return fans;
+/// Cut along creases, so that its vertices are the fans of faces that follow each other smoothly.
+HalfEdgeMesh smoothFans(const Adjacency& adjacency, const std::vector<Vec3f>& faceNormal,
+                        double creaseAngleDeg) {
+    std::vector<uint32_t> twin = adjacency.twin;
+    cutCreases(twin, faceNormal,
+               float(std::cos(std::clamp(creaseAngleDeg, 0.0, 180.0) * std::numbers::pi / 180) - 1e-6));
+    return HalfEdgeMesh(twin);
 }
 
 }  // namespace
@@ -62,11 +56,12 @@ void makeNormals(CornerMesh& mesh, const Adjacency& adjacency, const std::vector
     }
     if (complete) return;
 
-    DisjointSets fans = smoothFans(mesh, adjacency, faceNormal, creaseAngleDeg);
-    std::vector<uint32_t> normalOfFan(mesh.position.size(), kNone);
+    const HalfEdgeMesh fans = smoothFans(adjacency, faceNormal, creaseAngleDeg);
+    const std::vector<uint32_t> fanOf = fans.cornerVertices();
+    std::vector<uint32_t> normalOfFan(fans.vertexCount(), kNone);
     std::vector<Vec3d> sums;
     for (uint32_t h = 0; h < mesh.position.size(); ++h) {
-        uint32_t& slot = normalOfFan[fans.find(h)];
+        uint32_t& slot = normalOfFan[fanOf[h]];
         if (slot == kNone) {
             slot = uint32_t(sums.size());
             sums.emplace_back(0, 0, 0);
@@ -81,7 +76,7 @@ void makeNormals(CornerMesh& mesh, const Adjacency& adjacency, const std::vector
     for (const Vec3d& sum : sums) mesh.normals.push_back(sum.normalized().cast<float>());
     for (uint32_t h = 0; h < mesh.position.size(); ++h) {
         if (mesh.normal[h] != kNone) continue;
-        const uint32_t slot = normalOfFan[fans.find(h)];
+        const uint32_t slot = normalOfFan[fanOf[h]];
         // A fan that wraps round to cancel itself (a fin seen from both sides) keeps the normals of its
         // faces.
         if (sums[slot].norm() < 1e-9) {

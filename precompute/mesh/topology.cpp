@@ -128,6 +128,14 @@ Adjacency pairHalfEdges(std::span<const uint32_t> corners, uint32_t vertexCount,
     return result;
 }
 
+void cutCreases(std::vector<uint32_t>& twin, std::span<const Vec3f> normals, float cosine) {
+    for (uint32_t h = 0; h < twin.size(); ++h) {
+        const uint32_t other = twin[h];
+        if (other == kNone || h > other || normals[h / 3].dot(normals[other / 3]) >= cosine) continue;
+        twin[h] = twin[other] = kNone;
+    }
+}
+
 DisjointSets::DisjointSets(size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0u); }
 
 uint32_t DisjointSets::find(uint32_t item) {

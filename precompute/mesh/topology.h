@@ -38,6 +38,9 @@ struct Adjacency {
 Adjacency pairHalfEdges(std::span<const uint32_t> corners, uint32_t vertexCount,
                         std::span<const Vec3f> normals);
 
+/// Unpairs half-edges between faces whose normals' angle has a cosine below this.
+void cutCreases(std::vector<uint32_t>& twin, std::span<const Vec3f> normals, float cosine);
+
 /// Union-find; the representative of a set is its lowest member.
 class DisjointSets {
   public:
