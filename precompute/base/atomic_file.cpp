@@ -95,7 +95,7 @@ int removeStaleTemporaries(const fs::path& directory) {
 std::string readFile(const fs::path& path) {
     if (fs::is_directory(path)) throw InputError(path.string(), "is a directory", "name a file");
     std::FILE* file = std::fopen(path.c_str(), "rb");
-    if (!file) throw InputError(path.string(), "cannot be read: " + systemMessage());
+    if (!file) throw InputError(path.string(), "cannot be read: " + systemMessage(), "check the path");
     std::string bytes;
     char block[1 << 16];
     size_t count = 0;
