@@ -1,6 +1,6 @@
 // OpenMesh's half-edge structure (M. Botsch, S. Steinberg, S. Bischoff, L. Kobbelt, "OpenMesh: A Generic and
 // Efficient Polygon Mesh Data Structure", OpenSG Symposium 2002), linked through its kernel rather than
-// add_face: that one looks for edges by their vertices, so it takes time quadratic in the valence and refuses
+// add_face: that one finds edges by their vertices, which can take time quadratic in the valence and refuses
 // or mispairs faces where two edges join the same two vertices.
 #include "precompute/mesh/half_edge_mesh.h"
 
