@@ -91,14 +91,17 @@ class ChartRaster {
         const double side = turn(p[0], p[1], p[2]) < 0 ? -1 : 1;
         std::array<double, 3> length;
         for (size_t k = 0; k < 3; ++k) length[k] = (p[(k + 1) % 3] - p[k]).norm();
-        for (int y = y0; y <= y1; ++y)
-            for (int x = x0; x <= x1; ++x) {
+        for (int y = y0; y <= y1; ++y) {
+            const auto [from, to] =
+                columnsInRow({p[0].x(), p[1].x(), p[2].x()}, {p[0].y(), p[1].y(), p[2].y()}, y, x0, x1);
+            for (int x = from; x <= to; ++x) {
                 const Point centre(x + 0.5, y + 0.5);
                 bool inside = true;
                 for (size_t k = 0; k < 3 && inside; ++k)
                     inside = side * turn(p[k], p[(k + 1) % 3], centre) > kMargin * length[k];
                 if (inside) visit(size_t(y) * size_t(width_) + size_t(x));
             }
+        }
     }
 
     const AtlasMesh& mesh_;

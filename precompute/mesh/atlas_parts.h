@@ -1,8 +1,10 @@
 // The steps of the atlas: segment, merge, project, split, pack. Internal to the mesh stage.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "precompute/io/scene.h"
@@ -106,6 +108,11 @@ Packing packCharts(const AtlasMesh& mesh, const ChartFaces& faces, const std::ve
                    int texels, int gutter);
 /// Turns by 90° in the plane.
 ChartShape turned(const ChartShape& shape);
+
+/// Columns from low to high that a triangle reaches between y = row and row + 1, generously: to test all of
+/// them would cost the square of a splinter's length. Empty: the second below the first.
+std::pair<int, int> columnsInRow(const std::array<double, 3>& x, const std::array<double, 3>& y, int row,
+                                 int low, int high);
 
 /// Texel centres that the triangles of uv1 cover.
 struct Coverage {

@@ -48,6 +48,26 @@ double depthInside(const RasterTriangle& r, double side, double x, double y) {
 
 }  // namespace
 
+std::pair<int, int> columnsInRow(const std::array<double, 3>& x, const std::array<double, 3>& y, int row,
+                                 int low, int high) {
+    constexpr int kNarrow = 8;
+    if (high - low < kNarrow) return {low, high};
+    double left = 1e300, right = -1e300;
+    for (size_t k = 0; k < 3; ++k) {
+        const size_t l = (k + 1) % 3;
+        const double rise = y[l] - y[k];
+        if (std::max(y[k], y[l]) < row || std::min(y[k], y[l]) > row + 1) continue;
+        for (int end = 0; end < 2; ++end) {
+            const double t = rise != 0 ? std::clamp((row + end - y[k]) / rise, 0.0, 1.0) : end;
+            const double at = x[k] + t * (x[l] - x[k]);
+            left = std::min(left, at);
+            right = std::max(right, at);
+        }
+    }
+    if (left > right) return {0, -1};
+    return {int(std::max(double(low), std::floor(left) - 1)), int(std::min(double(high), std::ceil(right)))};
+}
+
 Coverage measureCoverage(const Scene& scene, int texels) {
     const int bands = (texels + kBandRows - 1) / kBandRows;
     const size_t triangles = scene.triangleCount();
@@ -82,8 +102,9 @@ Coverage measureCoverage(const Scene& scene, int texels) {
             const int x0 = std::max(0, int(std::ceil(low - 0.5))),
                       x1 = std::min(texels - 1, int(std::floor(high - 0.5)));
             const auto [yLow, yHigh] = rowRange(r);
-            for (int y = std::max(rowBegin, yLow); y <= std::min(rowEnd - 1, yHigh); ++y)
-                for (int x = x0; x <= x1; ++x) {
+            for (int y = std::max(rowBegin, yLow); y <= std::min(rowEnd - 1, yHigh); ++y) {
+                const auto [from, to] = columnsInRow(r.x, r.y, y, x0, x1);
+                for (int x = from; x <= to; ++x) {
                     const double depth = depthInside(r, side, x + 0.5, y + 0.5);
                     if (depth < 0) continue;
                     const size_t cell = size_t(y - rowBegin) * size_t(texels) + size_t(x);
@@ -92,6 +113,7 @@ Coverage measureCoverage(const Scene& scene, int texels) {
                     again += inside[cell];
                     inside[cell] = 1;
                 }
+            }
         }
         covered += size_t(std::count(touched.begin(), touched.end(), uint8_t(1)));
         twice += again;

@@ -3,12 +3,16 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <random>
 
 #include "precompute/base/error.h"
+#include "precompute/mesh/atlas_parts.h"
 #include "precompute/mesh/load_mesh.h"
 #include "tests/mesh/mesh_kinds.h"
+#include "tests/mesh/plane_geometry.h"
 
 namespace prt {
 namespace {
@@ -193,6 +197,36 @@ TEST(ValidAtlas, OverlapsHolesAndNumbersOutsideAreRefused) {
         Scene grid = prepareScene(makeGrid(16), "grid", {});
         for (const Vec3f& p : grid.positions) grid.uv1.emplace_back(0.5f + side * (p.x() - 0.5f), p.z());
         EXPECT_TRUE(isValidAtlas(grid, 512));
+    }
+}
+
+TEST(ColumnsInRow, HoldEveryCentreOfATriangleAndFewMore) {
+    std::mt19937 random(11);
+    std::uniform_real_distribution<double> place(-5, 205), small(-1, 1);
+    for (int i = 0; i < 2000; ++i) {
+        // Every other one is a splinter, every fourth has an edge exactly on a row of centres.
+        Triangle2 t{{{place(random), place(random)}, {place(random), place(random)}, {0, 0}}};
+        t[2] = {place(random), place(random)};
+        if (i % 2) t[2] = {t[1][0] + small(random), t[1][1] + small(random)};
+        if (i % 4 == 2) t[0][1] = t[1][1] = std::floor(t[0][1]) + 0.5;
+        double widest = 0, slope = 0;
+        for (int y = 0; y < 200; ++y) {
+            const auto [from, to] =
+                columnsInRow({t[0][0], t[1][0], t[2][0]}, {t[0][1], t[1][1], t[2][1]}, y, 0, 199);
+            for (int x = 0; x < 200; ++x) {
+                if (x >= from && x <= to) continue;
+                ASSERT_FALSE(containsPoint(t, {x + 0.5, y + 0.5})) << i << ": " << x << ", " << y;
+            }
+            widest = std::max(widest, double(to - from));
+        }
+        for (size_t k = 0; k < 3; ++k) {
+            const Point2 &a = t[k], &b = t[(k + 1) % 3];
+            slope = std::max(slope, std::abs(b[0] - a[0]) / std::max(std::abs(b[1] - a[1]), 1e-9));
+        }
+        // In one row each long edge moves by its slope; they lie one unit and one unit's slope apart at most.
+        if (i % 2) {
+            EXPECT_LE(widest, 2 * slope + 1 + 3) << i;
+        }
     }
 }
 
