@@ -31,3 +31,13 @@ def compose(rows, destination):
             sheet.paste(picture, (x, y + LABEL))
             draw.text((x, y + LABEL + picture.height + 3), label, font=font, fill=(200, 200, 200))
     sheet.save(destination, optimize=True)
+
+
+def strip(files, destination, width):
+    """Writes a JPEG of pictures side by side, each averaged down to a width."""
+    pictures = [Image.open(file).convert("RGB") for file in files]
+    pictures = [p.resize((width, p.height * width // p.width), Image.Resampling.BOX) for p in pictures]
+    sheet = Image.new("RGB", (sum(p.width + 4 for p in pictures) - 4, pictures[0].height), (255, 255, 255))
+    for i, picture in enumerate(pictures):
+        sheet.paste(picture, (i * (width + 4), 0))
+    sheet.save(destination, quality=88)
