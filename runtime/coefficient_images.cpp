@@ -1,6 +1,6 @@
 // Sources: [IwanickiSloan2012, Sec. 3.4] (four coefficients to a texel). Borders in place of seamless cube
-// arrays are 10-25 % faster under llvmpipe; its bilinear filter works in float (tests hold it to 1e-5) and takes
-// two thirds of the time of four texelFetch.
+// arrays are 10-25 % faster under llvmpipe; its bilinear filter works in float (tests hold it to 1e-5) and
+// takes two thirds of the time of four texelFetch.
 #include "runtime/coefficient_images.h"
 
 #include <fmt/format.h>

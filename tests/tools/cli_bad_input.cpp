@@ -12,12 +12,6 @@ namespace fs = std::filesystem;
 
 constexpr int kUsage = 2, kInput = 3, kOutput = 4;
 
-std::string slurp(const fs::path& path) {
-    std::ostringstream text;
-    text << std::ifstream(path, std::ios::binary).rdbuf();
-    return text.str();
-}
-
 /// One line, of the shape `prt COMMAND: error: …`, naming what is wrong; no stack trace, no temporary, no new
 /// file.
 void expectRefused(const Folder& folder, const std::vector<std::string>& arguments, int exitCode,

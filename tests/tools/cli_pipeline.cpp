@@ -14,12 +14,6 @@ namespace prt::test {
 namespace {
 namespace fs = std::filesystem;
 
-std::string slurp(const fs::path& path) {
-    std::ostringstream text;
-    text << std::ifstream(path, std::ios::binary).rdbuf();
-    return text.str();
-}
-
 nlohmann::json runJson(const Folder& folder, std::vector<std::string> arguments) {
     arguments.insert(arguments.end(), {"--json", "-"});
     const ProcessResult result = runPrt(folder, arguments);

@@ -11,11 +11,7 @@ namespace fs = std::filesystem;
 
 std::map<std::string, std::string> contents(const Folder& folder) {
     std::map<std::string, std::string> all;
-    for (const std::string& name : folder.files()) {
-        std::ostringstream text;
-        text << std::ifstream(folder / name, std::ios::binary).rdbuf();
-        all[name] = text.str();
-    }
+    for (const std::string& name : folder.files()) all[name] = slurp(folder / name);
     return all;
 }
 

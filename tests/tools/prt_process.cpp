@@ -18,13 +18,13 @@ std::string quoted(const std::string& text) {
     return result + "'";
 }
 
+}  // namespace
+
 std::string slurp(const fs::path& path) {
     std::ostringstream text;
     text << std::ifstream(path, std::ios::binary).rdbuf();
     return text.str();
 }
-
-}  // namespace
 
 Folder::Folder() {
     std::string pattern = (fs::temp_directory_path() / "prt-test-XXXXXX").string();

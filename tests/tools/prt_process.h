@@ -27,6 +27,9 @@ class Folder {
     std::filesystem::path path_;
 };
 
+/// The bytes of a file.
+std::string slurp(const std::filesystem::path& path);
+
 /// @param arguments  without "prt"
 /// @param prelude    shell text run first in the same shell, e.g. "ulimit -f 10;"
 ProcessResult runPrt(const Folder& folder, const std::vector<std::string>& arguments,
