@@ -1,7 +1,8 @@
 // Conservative rasterisation of the atlas with a nearest point per texel. The overlap test of a triangle and
 // a square is the separating axis test of T. Akenine-Möller and T. Aila, "Conservative and Tiled
 // Rasterization Using a Modified Triangle Set-Up", JGT 10(3), 2005; the nearest point follows C. Ericson,
-// "Real-Time Collision Detection", 2005, 5.1.5.
+// "Real-Time Collision Detection", 2005, 5.1.5. Pieces of triangles within a cell: I. Sutherland and G.
+// Hodgman, "Reentrant Polygon Clipping", CACM 17(1), 1974.
 #include "precompute/mesh/texel_raster.h"
 
 #include <algorithm>
@@ -85,11 +86,111 @@ bool footprintTouches(const UvTriangle& t, const Vec2d& centre) {
     return true;
 }
 
+enum class Overlap { None, Some, Full };
+
+/// How a square of half-size `half` lies to a triangle, by the triangle's edges alone: Some may be none.
+Overlap overlapOf(const UvTriangle& t, const Vec2d& middle, double half) {
+    const double area = cross2(t.p[1] - t.p[0], t.p[2] - t.p[0]);
+    bool full = true;
+    for (size_t k = 0; k < 3; ++k) {
+        const Vec2d edge = t.p[(k + 1) % 3] - t.p[k];
+        const double at = cross2(edge, middle - t.p[k]) * (area < 0 ? -1 : 1);
+        const double reach = half * (std::abs(edge.x()) + std::abs(edge.y()));
+        if (at <= -reach) return Overlap::None;
+        full = full && at >= reach;
+    }
+    return full && area != 0 ? Overlap::Full : Overlap::Some;
+}
+
+/// What lies in a square of the texture.
+struct Piece {
+    double area = 0;
+    Vec2d centroid{0, 0};
+};
+
+/// Piece of a triangle within [low, low + size]².
+Piece pieceWithin(const UvTriangle& t, const Vec2d& low, double size) {
+    std::array<Vec2d, 8> polygon, clipped;
+    size_t count = 3;
+    for (size_t k = 0; k < 3; ++k) polygon[k] = t.p[k] - low;
+    for (int side = 0; side < 4; ++side) {
+        const int axis = side / 2;
+        const auto within = [&](const Vec2d& q) { return side % 2 ? size - q[axis] : q[axis]; };
+        size_t kept = 0;
+        for (size_t k = 0; k < count; ++k) {
+            const Vec2d &a = polygon[k], &b = polygon[(k + 1) % count];
+            const double da = within(a), db = within(b);
+            if (da >= 0) clipped[kept++] = a;
+            if ((da > 0 && db < 0) || (da < 0 && db > 0)) clipped[kept++] = a + da / (da - db) * (b - a);
+        }
+        if (kept < 3) return {};
+        count = kept;
+        polygon = clipped;
+    }
+    double twice = 0;
+    Vec2d moment(0, 0);
+    for (size_t k = 1; k + 1 < count; ++k) {
+        const double part = cross2(polygon[k] - polygon[0], polygon[k + 1] - polygon[0]);
+        twice += part;
+        moment += part / 3 * (polygon[0] + polygon[k] + polygon[k + 1]);
+    }
+    if (!(std::abs(twice) > 1e-12)) return {};
+    return {std::abs(twice) / 2, low + moment / twice};
+}
+
+/// A quarter of a texel: how much of it charts cover, and the largest piece.
+struct Cell {
+    double area = 0, largest = 0;
+    Vec2d moment{0, 0}, centroid{0, 0};
+    uint32_t triangle = kNone;
+    void add(uint32_t index, const Piece& piece) {
+        area += piece.area;
+        moment += piece.area * piece.centroid;
+        if (!(piece.area > largest)) return;
+        largest = piece.area;
+        centroid = piece.centroid;
+        triangle = index;
+    }
+    /// The centroid of all pieces where it lies on the triangle of the largest, as in a cell that an edge
+    /// cuts.
+    void centre(const UvTriangle& t) {
+        const Vec2d all = moment / area;
+        const auto b = t.barycentric(all);
+        if ((b[0] * t.p[0] + b[1] * t.p[1] + b[2] * t.p[2] - all).squaredNorm() < 1e-18) centroid = all;
+    }
+};
+constexpr double kCellEdge = 0.5;
+/// Parts of less of a texel are left out: few directions would fall to them.
+constexpr double kSmallestShare = 1.0 / 128;
+
+/// The cells that the texels of one band see.
+struct BandCells {
+    int columns = 0, rowBegin = 0, rowEnd = 0;
+    std::vector<Cell> cells;
+    Cell* row(int y) { return &cells[size_t(y - rowBegin) * size_t(columns)]; }
+    /// Null off the atlas.
+    const Cell* find(int x, int y) const {
+        if (x < 0 || x >= columns || y < rowBegin || y >= rowEnd) return nullptr;
+        return &cells[size_t(y - rowBegin) * size_t(columns) + size_t(x)];
+    }
+};
+
+/// Parts of the texels of one band.
+struct BandParts {
+    BandCells grid;                        ///< while the band is worked on
+    std::vector<uint32_t> subPointOfCell;  ///< too
+    std::vector<SurfacePoint> subPoints;
+    std::vector<TexelPart> parts;
+    std::vector<uint32_t> counts;  ///< parts of each point
+    std::vector<uint8_t> whole;    ///< [points]
+};
+
 struct Rasterizer {
     const Scene& scene;
     int width, height;
     std::vector<uint32_t> bestTriangle;  ///< [texels]
     std::vector<uint32_t> bandFirst, bandTriangles;
+    std::vector<uint32_t> chartOfTriangle;
 
     UvTriangle uvTriangle(size_t triangle) const {
         UvTriangle t;
@@ -106,6 +207,9 @@ struct Rasterizer {
     void binTriangles();
     void rasterizeBand(int band);
     SurfacePoint surfacePoint(uint32_t triangle, const Vec2d& centre) const;
+    BandCells cellsOfBand(int band) const;
+    void splitTexel(int x, int y, uint32_t chartId, const SurfacePoint& own, BandParts& out) const;
+    BandParts splitBand(int band, const TexelSurface& surface) const;
 };
 
 /// Sorts triangles into bands of rows by their bounds, in index order within each.
@@ -180,8 +284,91 @@ SurfacePoint Rasterizer::surfacePoint(uint32_t triangle, const Vec2d& centre) co
             triangle};
 }
 
+BandCells Rasterizer::cellsOfBand(int band) const {
+    const int texelEnd = std::min(height, (band + 1) * kBandRows);
+    BandCells grid{
+        2 * width, std::max(0, 2 * band * kBandRows - 1), std::min(2 * height, 2 * texelEnd + 1), {}};
+    grid.cells.resize(size_t(grid.columns) * size_t(grid.rowEnd - grid.rowBegin));
+    const double full = kCellEdge * kCellEdge;
+    for (uint32_t i = bandFirst[size_t(band)]; i < bandFirst[size_t(band) + 1]; ++i) {
+        const UvTriangle t = uvTriangle(bandTriangles[i]);
+        const auto cellRange = [&](int axis, int begin, int end) {
+            const auto [low, high] = std::minmax({t.p[0][axis], t.p[1][axis], t.p[2][axis]});
+            return std::array{std::max(begin, int(std::floor(low / kCellEdge))),
+                              std::min(end, int(std::floor(high / kCellEdge)) + 1)};
+        };
+        const auto columns = cellRange(0, 0, grid.columns), rows = cellRange(1, grid.rowBegin, grid.rowEnd);
+        for (int y = rows[0]; y < rows[1]; ++y)
+            for (int x = columns[0]; x < columns[1]; ++x) {
+                const Vec2d middle((x + 0.5) * kCellEdge, (y + 0.5) * kCellEdge);
+                const Overlap overlap = overlapOf(t, middle, kCellEdge / 2);
+                if (overlap == Overlap::None) continue;
+                grid.row(y)[x].add(bandTriangles[i],
+                                   overlap == Overlap::Full
+                                       ? Piece{full, middle}
+                                       : pieceWithin(t, Vec2d(x * kCellEdge, y * kCellEdge), kCellEdge));
+            }
+    }
+    for (Cell& cell : grid.cells)
+        if (cell.area > cell.largest) cell.centre(uvTriangle(cell.triangle));
+    return grid;
+}
+
+void Rasterizer::splitTexel(int x, int y, uint32_t chartId, const SurfacePoint& own, BandParts& out) const {
+    const Vec2d centre(x + 0.5, y + 0.5);
+    std::array<std::pair<size_t, double>, kMaxTexelParts> seen;
+    size_t count = 0;
+    double sum = 0, covered = 0;
+    for (int cy = 2 * y - 1; cy <= 2 * y + 2; ++cy)
+        for (int cx = 2 * x - 1; cx <= 2 * x + 2; ++cx) {
+            const Cell* cell = out.grid.find(cx, cy);
+            if (!cell || cell->triangle == kNone || chartOfTriangle[cell->triangle] != chartId) continue;
+            covered += std::min(cell->area, kCellEdge * kCellEdge);
+            const Vec2d off = (cell->centroid - centre).cwiseAbs();
+            const double filter = (1 - off.x()) * (1 - off.y());
+            seen[count++] = {size_t(cell - out.grid.cells.data()), cell->area * filter * filter};
+            sum += seen[count - 1].second;
+        }
+    out.whole.push_back(covered >= 4 - 1e-6);
+    const size_t before = out.parts.size();
+    double kept = 0;
+    for (size_t k = 0; k < count; ++k)
+        if (seen[k].second >= kSmallestShare * sum) kept += seen[k].second;
+    for (size_t k = 0; kept > 0 && k < count; ++k) {
+        if (!(seen[k].second >= kSmallestShare * sum)) continue;
+        const Cell& cell = out.grid.cells[seen[k].first];
+        uint32_t& id = out.subPointOfCell[seen[k].first];
+        if (id == kNone) {
+            id = uint32_t(out.subPoints.size());
+            out.subPoints.push_back(surfacePoint(cell.triangle, cell.centroid));
+        }
+        out.parts.push_back({id, float(seen[k].second / kept)});
+    }
+    if (out.parts.size() == before) {
+        out.parts.push_back({uint32_t(out.subPoints.size()), 1.0f});
+        out.subPoints.push_back(own);
+    }
+    out.counts.push_back(uint32_t(out.parts.size() - before));
+}
+
+BandParts Rasterizer::splitBand(int band, const TexelSurface& surface) const {
+    BandParts out;
+    out.grid = cellsOfBand(band);
+    out.subPointOfCell.assign(out.grid.cells.size(), kNone);
+    const int rowBegin = band * kBandRows, rowEnd = std::min(height, rowBegin + kBandRows);
+    for (int y = rowBegin; y < rowEnd; ++y)
+        for (int x = 0; x < width; ++x) {
+            const size_t texel = size_t(y) * size_t(width) + size_t(x);
+            const uint32_t point = surface.pointOfTexel[texel];
+            if (point != kNoPoint) splitTexel(x, y, surface.chartOfTexel[texel], surface.points[point], out);
+        }
+    out.grid = {};
+    out.subPointOfCell = {};
+    return out;
+}
+
 /// Ids of the pieces of triangles that are connected in uv1, numbered by their lowest triangle.
-std::vector<uint32_t> chartOfTriangle(const Scene& scene) {
+std::vector<uint32_t> findCharts(const Scene& scene) {
     const auto& uv = scene.uv1;
     std::vector<uint32_t> same(uv.size());
     IndexTable table(uv.size());
@@ -203,6 +390,31 @@ std::vector<uint32_t> chartOfTriangle(const Scene& scene) {
     return chart;
 }
 
+void joinParts(std::vector<BandParts>& bands, TexelSurface& surface) {
+    size_t subPoints = 0, parts = 0;
+    for (const BandParts& band : bands) {
+        subPoints += band.subPoints.size();
+        parts += band.parts.size();
+    }
+    surface.subPoints.reserve(subPoints);
+    surface.parts.reserve(parts);
+    surface.firstPart.reserve(surface.points.size() + 1);
+    surface.whole.reserve(surface.points.size());
+    uint32_t first = 0;
+    for (BandParts& band : bands) {
+        for (const uint32_t count : band.counts) {
+            surface.firstPart.push_back(first);
+            first += count;
+        }
+        const uint32_t base = uint32_t(surface.subPoints.size());
+        for (const TexelPart& part : band.parts) surface.parts.push_back({base + part.subPoint, part.share});
+        surface.subPoints.insert(surface.subPoints.end(), band.subPoints.begin(), band.subPoints.end());
+        surface.whole.insert(surface.whole.end(), band.whole.begin(), band.whole.end());
+        band = {};
+    }
+    surface.firstPart.push_back(first);
+}
+
 }  // namespace
 
 TexelSurface rasterizeTexels(const Scene& scene, int width, int height) {
@@ -210,7 +422,7 @@ TexelSurface rasterizeTexels(const Scene& scene, int width, int height) {
     PRT_CHECK_LT(0, height);
     PRT_CHECK_EQ(scene.uv1.size(), scene.positions.size());
     const size_t texels = size_t(width) * size_t(height);
-    Rasterizer raster{scene, width, height, std::vector<uint32_t>(texels, kNone), {}, {}};
+    Rasterizer raster{scene, width, height, std::vector<uint32_t>(texels, kNone), {}, {}, findCharts(scene)};
     raster.binTriangles();
     const size_t bands = raster.bandFirst.size() - 1;
     parallelFor(bands, 1, [&](size_t begin, size_t end) {
@@ -222,12 +434,11 @@ TexelSurface rasterizeTexels(const Scene& scene, int width, int height) {
     surface.height = height;
     surface.pointOfTexel.assign(texels, kNoPoint);
     surface.chartOfTexel.assign(texels, kNoPoint);
-    const std::vector<uint32_t> chart = chartOfTriangle(scene);
     uint32_t count = 0;
     for (size_t i = 0; i < texels; ++i) {
         if (raster.bestTriangle[i] == kNone) continue;
         surface.pointOfTexel[i] = count++;
-        surface.chartOfTexel[i] = chart[raster.bestTriangle[i]];
+        surface.chartOfTexel[i] = raster.chartOfTriangle[raster.bestTriangle[i]];
     }
     surface.points.resize(count);
     parallelFor(size_t(height), kBandRows, [&](size_t begin, size_t end) {
@@ -237,6 +448,11 @@ TexelSurface rasterizeTexels(const Scene& scene, int width, int height) {
             surface.points[surface.pointOfTexel[i]] = raster.surfacePoint(raster.bestTriangle[i], centre);
         }
     });
+    std::vector<BandParts> bandParts(bands);
+    parallelFor(bands, 1, [&](size_t begin, size_t end) {
+        for (size_t band = begin; band < end; ++band) bandParts[band] = raster.splitBand(int(band), surface);
+    });
+    joinParts(bandParts, surface);
     return surface;
 }
 

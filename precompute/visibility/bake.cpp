@@ -11,6 +11,9 @@
 #include <unordered_map>
 
 #include "precompute/base/check.h"
+#include "precompute/base/error.h"
+#include "precompute/base/parallel.h"
+#include "precompute/math/directions.h"
 #include "precompute/visibility/trace_blocks.h"
 
 namespace prt {
@@ -88,12 +91,124 @@ std::vector<Corner> thinned(const std::vector<Corner>& corners, double sum) {
     return kept;
 }
 
+// Directions over the sphere that tell whether a sub-point is inside geometry; half lie above the horizon.
+constexpr int kHiddenDirections = 64;
+constexpr size_t kSpreadStep = 25;  // odd, so that it meets all of a power of two
+// A sub-point of which so many rays met no back of a face is outside: from inside half or more would have.
+constexpr int kOpenRays = 6;
+
+// Whether most rays that hit anything hit the back of a face (as for whole items, with fewer rays).
+bool looksHidden(const RayCaster& caster, const SurfacePoint& point, std::span<const Vec3f> directions,
+                 std::span<const uint8_t> doubleSided) {
+    const Vec3f origin = caster.offsetOrigin(point.position, point.normal);
+    int rays = 0, hits = 0, backs = 0;
+    for (const Vec3f& direction : directions) {
+        if (!(point.normal.dot(direction) > 0)) continue;
+        if (rays >= kOpenRays && backs == 0) return false;
+        ++rays;
+        const RayHit hit = caster.firstHit(origin, direction);
+        if (hit.triangle == RayHit{}.triangle) continue;
+        ++hits;
+        backs += hit.backFace && (doubleSided.empty() || !doubleSided[hit.triangle]);
+    }
+    return backs * 2 > hits && hits * 4 >= rays;
+}
+
+// The spiral of directions in an order in which every few of them are spread over the sphere.
+std::vector<Vec3f> spreadDirections() {
+    const std::vector<Vec3f> spiral = sphericalFibonacci(kHiddenDirections);
+    std::vector<Vec3f> spread;
+    for (size_t k = 0; k < spiral.size(); ++k) spread.push_back(spiral[k * kSpreadStep % spiral.size()]);
+    return spread;
+}
+
+// Non-zero for sub-points inside geometry.
+std::vector<uint8_t> findHiddenParts(const RayCaster& caster, const TexelSurface& surface,
+                                     const BakeOptions& options) {
+    std::vector<uint8_t> hidden(surface.subPoints.size(), 0);
+    if (!options.findInside) return hidden;
+    const std::vector<Vec3f> directions = spreadDirections();
+    parallelFor(hidden.size(), 1024, [&](size_t begin, size_t end) {
+        throwIfInterrupted();
+        for (size_t p = begin; p < end; ++p)
+            hidden[p] = looksHidden(caster, surface.subPoints[p], directions, options.doubleSided);
+    });
+    return hidden;
+}
+
+// What the texels' items own.
+struct TexelItems {
+    std::vector<SurfacePoint> points;
+    std::vector<uint32_t> firstPoint, shareEnd;
+};
+
+// Shares of one item's sub-points as the upper ends of ranges of [0, 2^32).
+class ShareEnds {
+  public:
+    explicit ShareEnds(double sum) : scale_(4294967296.0 / sum) {}
+    uint32_t next(double share) {
+        passed_ += share;
+        return uint32_t(std::min(passed_ * scale_, 4294967295.0));
+    }
+
+  private:
+    double scale_, passed_ = 0;
+};
+
+// Parts of each texel that can be seen, all where none can; whole texels that nothing hides keep one point.
+TexelItems makeTexelItems(const TexelSurface& surface, const std::vector<uint8_t>& hidden) {
+    TexelItems items;
+    items.points.reserve(surface.parts.size());
+    items.shareEnd.reserve(surface.parts.size());
+    items.firstPoint.reserve(surface.points.size() + 1);
+    for (size_t i = 0; i < surface.points.size(); ++i) {
+        items.firstPoint.push_back(uint32_t(items.points.size()));
+        const std::span parts(&surface.parts[surface.firstPart[i]],
+                              surface.firstPart[i + 1] - surface.firstPart[i]);
+        double all = 0, seen = 0;
+        size_t seenCount = 0;
+        for (const TexelPart& part : parts) {
+            all += double(part.share);
+            if (hidden[part.subPoint]) continue;
+            seen += double(part.share);
+            ++seenCount;
+        }
+        if (seenCount == parts.size() && surface.whole[i]) {
+            items.points.push_back(surface.points[i]);
+            items.shareEnd.push_back(0xffffffffu);
+            continue;
+        }
+        ShareEnds ends(seenCount ? seen : all);
+        for (const TexelPart& part : parts) {
+            if (seenCount && hidden[part.subPoint]) continue;
+            items.points.push_back(surface.subPoints[part.subPoint]);
+            items.shareEnd.push_back(ends.next(double(part.share)));
+        }
+    }
+    items.firstPoint.push_back(uint32_t(items.points.size()));
+    return items;
+}
+
 }  // namespace
 
 BakeResult bakeVisibility(const RayCaster& caster, std::span<const SurfacePoint> points,
                           const BakeOptions& options) {
     BakeItems items;
     items.points = points;
+    return bakeItems(caster, items, options, "points");
+}
+
+BakeResult bakeTexelVisibility(const RayCaster& caster, const TexelSurface& surface,
+                               const BakeOptions& options) {
+    const size_t count = surface.points.size();
+    PRT_CHECK_EQ(surface.firstPart.size(), count + 1);
+    PRT_CHECK_EQ(surface.firstPart.back(), surface.parts.size());
+    PRT_CHECK_EQ(surface.whole.size(), count);
+    const TexelItems texels = makeTexelItems(surface, findHiddenParts(caster, surface, options));
+    BakeItems items;
+    items.points = texels.points;
+    items.firstPoint = texels.firstPoint;
+    items.shareEnd = texels.shareEnd;
     return bakeItems(caster, items, options, "points");
 }
 
@@ -148,11 +263,9 @@ BakeResult bakeVertexVisibility(const RayCaster& caster, const VertexPoints& ver
         itemOf[v] = uint32_t(owner.size());
         owner.push_back(v);
         first.push_back(vertices.firstPoint[v]);
-        double passed = 0;
-        for (uint32_t p = vertices.firstPoint[v]; p < vertices.firstPoint[v + 1]; ++p) {
-            passed += double(vertices.share[p]);
-            shareEnd[p] = uint32_t(std::min(passed * 4294967296.0, 4294967295.0));
-        }
+        ShareEnds ends(1);
+        for (uint32_t p = vertices.firstPoint[v]; p < vertices.firstPoint[v + 1]; ++p)
+            shareEnd[p] = ends.next(double(vertices.share[p]));
     }
     first.push_back(uint32_t(vertices.points.size()));
 

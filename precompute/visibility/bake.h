@@ -43,6 +43,14 @@ struct BakeResult {
 BakeResult bakeVisibility(const RayCaster& caster, std::span<const SurfacePoint> points,
                           const BakeOptions& options);
 
+/// As bakeVisibility, one result per point of the surface. A texel whose lookups stay on its chart, with
+/// nothing on or in that surface, is its point, to the bit. Others stand for their parts (on a chart's border
+/// the point would be one that a neighbouring surface touches), less those inside geometry while any is not;
+/// the directions are dealt to the parts by share, so the cost is that of one point.
+/// @throws UsageError, Interrupted
+BakeResult bakeTexelVisibility(const RayCaster& caster, const TexelSurface& surface,
+                               const BakeOptions& options);
+
 /// Per-vertex points: each vertex stands for the corners of its faces. Sub-points lie inside the incident
 /// faces (inset from the vertex, so that rays do not start in the plane of an adjoining wall); the directions
 /// are dealt to the sub-points by angle, so the cost is that of one point.

@@ -114,7 +114,7 @@ Baked bake(const RayCaster& caster, const Scene& scene, const PrecomputeSettings
         if (surface.points.empty())
             throw InputError(settings.meshPath, "no texel of the atlas lies on the mesh", "raise --texels");
         baked.points = surface.points.size();
-        baked.result = bakeVisibility(caster, surface.points, options);
+        baked.result = bakeTexelVisibility(caster, surface, options);
         baked.map = fillTexels(surface, baked.result, settings.shOrder);
     }
     baked.map.attributes = {{"projection", "plain"},
