@@ -1,5 +1,5 @@
-// Values for points that have none: nearest-neighbour dilation per texel, inverse-distance weights [Shepard1968]
-// per vertex.
+// Values for points that have none: nearest-neighbour dilation per texel, inverse-distance weights
+// [Shepard1968] per vertex.
 #include "precompute/visibility/fill.h"
 
 #include <algorithm>
