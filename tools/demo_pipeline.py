@@ -153,7 +153,7 @@ def main():
         summary, scene_rows, blend = demo.run_scene(name, mesh, precompute, camera, environments)
         summaries.append(summary)
         rows += scene_rows
-        blends.append((str(blend), f"{name}: two environments blended, turned by 120 degrees"))
+        blends.append((str(blend), f"{name}, light turned by 120 degrees"))
     rows.append(contact_sheet.Row("blended and rotated", blends))
     sheet = demo.out / "contact-sheet.png"
     contact_sheet.compose(rows, sheet)
