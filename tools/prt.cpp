@@ -1,8 +1,10 @@
 // The prt command: finds the subcommand, turns errors into one line and an exit code.
 #include <fmt/format.h>
 #include <signal.h>
+#include <time.h>
 #include <unistd.h>
 
+#include <csignal>
 #include <cstdio>
 #include <new>
 #include <string>
@@ -44,10 +46,20 @@ std::string usage() {
     return text;
 }
 
+volatile std::sig_atomic_t gInterruptSecond = 0;
+
 void onInterrupt(int) {
-    // The second Ctrl-C does not wait for work to reach its next check.
-    if (prt::interruptRequested()) ::_exit(kExitInterrupted);
-    prt::requestInterrupt();
+    timespec now{};
+    ::clock_gettime(CLOCK_MONOTONIC, &now);
+    const auto second = static_cast<std::sig_atomic_t>(now.tv_sec);
+    if (!prt::interruptRequested()) {
+        gInterruptSecond = second;
+        prt::requestInterrupt();
+        return;
+    }
+    // A later Ctrl-C does not wait for work to reach its next check. One that follows at once may be the same
+    // one: some senders (timeout(1)) signal the process and then its group.
+    if (second - gInterruptSecond > 1) ::_exit(kExitInterrupted);
 }
 
 int runCommand(int argc, char** argv) {
