@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "precompute/math/environment.h"
 #include "precompute/math/sh_rotation.h"
+#include "runtime/camera_frame.h"
 
 namespace prt::tools {
 namespace {
@@ -50,21 +50,16 @@ FloatImage blendImages(const std::vector<Environment>& environments, const std::
 }
 
 void paintBackground(FloatImage& image, const SurfaceImage& surface, const Camera& camera,
-                     const FloatImage& latLong, double rotationRad) {
-    const Vec3f forward = (camera.target - camera.eye).normalized();
-    const Vec3f right = forward.cross(camera.up).normalized();
-    const Vec3f up = right.cross(forward);
-    const double halfHeight = std::tan(camera.verticalFovDeg * std::numbers::pi / 360);
-    const double halfWidth = halfHeight * surface.width / surface.height;
+                     const Bounds& bounds, const FloatImage& latLong, double rotationRad) {
+    const CameraFrame frame = makeCameraFrame(camera, surface.width, surface.height, bounds);
     const Mat3d sourceFromWorld = rotationAboutUp(-rotationRad);
     for (int y = 0; y < surface.height; ++y)
         for (int x = 0; x < surface.width; ++x) {
             const size_t pixel = size_t(y) * size_t(surface.width) + size_t(x);
             if (surface.triangle[pixel] != kNoTriangle) continue;
-            const double px = (2 * (x + 0.5) / surface.width - 1) * halfWidth;
-            const double py = (1 - 2 * (y + 0.5) / surface.height) * halfHeight;
             const Vec3d direction =
-                (forward + float(px) * right + float(py) * up).cast<double>().normalized();
+                (frame.rayCorner + (x + 0.5) * frame.rayPerPixelX + (y + 0.5) * frame.rayPerPixelY)
+                    .normalized();
             const auto point = latLongPoint(sourceFromWorld * direction, latLong.width, latLong.height);
             const Vec3f value = sample(latLong, point[0], point[1]);
             std::copy_n(value.data(), 3, image.at(x, y));

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "precompute/io/environment_file.h"
+#include "precompute/io/scene.h"
 #include "precompute/io/surface_image.h"
 
 namespace prt::tools {
@@ -13,8 +14,9 @@ FloatImage blendImages(const std::vector<Environment>& environments, const std::
 
 /// Fills the pixels in which nothing is seen.
 /// @param image        [3 channels] of the surface's size
+/// @param bounds       of the scene, as the camera frame takes them
 /// @param rotationRad  turn of the environment about the up axis
 void paintBackground(FloatImage& image, const SurfaceImage& surface, const Camera& camera,
-                     const FloatImage& latLong, double rotationRad);
+                     const Bounds& bounds, const FloatImage& latLong, double rotationRad);
 
 }  // namespace prt::tools

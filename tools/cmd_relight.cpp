@@ -257,7 +257,8 @@ class Relight {
         if (!truth.empty()) {
             referenceImage = radianceFromIrradiance(truth, surface_);
             if (needBackground)
-                paintBackground(referenceImage, surface_, camera_, background, tables_.rotationRad());
+                paintBackground(referenceImage, surface_, camera_, sceneBounds(data_.scene), background,
+                                tables_.rotationRad());
         }
         if (arguments_.technique == "reference") image = referenceImage;
 

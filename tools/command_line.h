@@ -38,8 +38,6 @@ class CommandLine {
     /// @return false: help was printed, there is nothing to do
     /// @throws UsageError
     bool parse(int argc, char** argv);
-    /// Whether an option was given.
-    bool given(const std::string& name) const;
     const CommonOptions& common() const;
 
   private:
