@@ -1,4 +1,5 @@
-# Compiler settings and the two functions every CMakeLists.txt of the project uses: prt_library and prt_test.
+# Compiler settings and the functions every CMakeLists.txt of the project uses: prt_library, prt_test
+# and prt_bench.
 
 set(CMAKE_CXX_STANDARD 20)
 set(CMAKE_CXX_STANDARD_REQUIRED ON)
@@ -56,4 +57,18 @@ function(prt_test folder class)
   target_precompile_headers(${target} PRIVATE <gmock/gmock.h> <gtest/gtest.h> <vector> <string> <filesystem>)
   gtest_discover_tests(${target} TEST_PREFIX "prt.${class}.${folder}." DISCOVERY_TIMEOUT 120
                        PROPERTIES LABELS "${class}" TIMEOUT 600)
+endfunction()
+
+# prt_bench(<folder> SOURCES <cpp>... [DEPS <prt target>...])
+# One Google Benchmark binary bench_<folder>, built where PRT_BUILD_BENCH is on; run by hand, never by ctest.
+function(prt_bench folder)
+  cmake_parse_arguments(ARG "" "" "SOURCES;DEPS" ${ARGN})
+  if(NOT PRT_BUILD_BENCH OR NOT ARG_SOURCES)
+    return()
+  endif()
+  add_executable(bench_${folder} ${ARG_SOURCES})
+  target_link_libraries(bench_${folder} PRIVATE prt_settings benchmark::benchmark_main)
+  foreach(dep ${ARG_DEPS})
+    target_link_libraries(bench_${folder} PRIVATE prt_${dep})
+  endforeach()
 endfunction()
