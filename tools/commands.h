@@ -9,5 +9,6 @@ void runCompressCommand(int argc, char** argv);
 void runTabulateCommand(int argc, char** argv);
 void runRelightCommand(int argc, char** argv);
 void runInfoCommand(int argc, char** argv);
+void runMeasureCommand(int argc, char** argv);
 
 }  // namespace prt::tools

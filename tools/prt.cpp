@@ -30,6 +30,8 @@ constexpr Command kCommands[] = {
     {"relight", "draws a bundle under blended, rotated environments; compares with ray-traced truth",
      prt::tools::runRelightCommand},
     {"info", "explains a bundle: files, conventions, settings, what is stale", prt::tools::runInfoCommand},
+    {"measure", "reproduces the papers' figures: parameterizations, bases, rotation, products",
+     prt::tools::runMeasureCommand},
 };
 
 constexpr int kExitUsage = 2, kExitInput = 3, kExitOutput = 4, kExitInterrupted = 130;

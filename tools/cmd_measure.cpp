@@ -1,0 +1,52 @@
+// prt measure: finds the measurement.
+#include <fmt/format.h>
+
+#include <string>
+#include <vector>
+
+#include "precompute/base/error.h"
+#include "precompute/base/log.h"
+#include "tools/commands.h"
+#include "tools/measure/commands.h"
+
+namespace prt::tools {
+namespace {
+
+struct MeasureCommand {
+    const char* name;
+    const char* summary;
+    void (*run)(int, char**);
+};
+
+const std::vector<MeasureCommand> kMeasureCommands = {};
+
+std::string usage() {
+    std::string text =
+        "prt measure: figures of the papers, and of this machine, reproduced\n\n"
+        "Usage: prt measure WHAT [OPTIONS]\n\nWhat:\n";
+    for (const MeasureCommand& command : kMeasureCommands)
+        text += fmt::format("  {:<18}{}\n", command.name, command.summary);
+    return text +
+           "\nEach writes CSV, a plot (where gnuplot is installed) and, with --json, JSON.\n"
+           "prt measure WHAT --help lists every option with its default and range.\n";
+}
+
+}  // namespace
+
+void runMeasureCommand(int argc, char** argv) {
+    if (argc < 2) throw UsageError("", "what shall be measured?", "prt measure --help lists it");
+    const std::string name = argv[1];
+    if (name == "--help" || name == "-h" || name == "help") {
+        fmt::print("{}", usage());
+        return;
+    }
+    for (const MeasureCommand& command : kMeasureCommands) {
+        if (name != command.name) continue;
+        setProgramName("prt measure " + name);
+        command.run(argc - 1, argv + 1);
+        return;
+    }
+    throw UsageError("", fmt::format("'{}' is not a measurement", name), "prt measure --help lists them");
+}
+
+}  // namespace prt::tools

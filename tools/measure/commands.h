@@ -1,0 +1,11 @@
+// The measurements of `prt measure`. Each takes the arguments from its own name on.
+#pragma once
+
+namespace prt::tools {
+
+void runMeasureParameterization(int argc, char** argv);
+void runMeasureBasis(int argc, char** argv);
+void runMeasureRotation(int argc, char** argv);
+void runMeasureProduct(int argc, char** argv);
+
+}  // namespace prt::tools
