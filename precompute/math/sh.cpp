@@ -10,13 +10,14 @@
 #include "precompute/base/check.h"
 #include "precompute/base/error.h"
 #include "precompute/math/sh_legendre.h"
+#include "precompute/math/sh_straight_line.h"
 
 namespace prt {
 namespace {
 
 template <typename T>
-void evalScalar(int shOrder, T x, T y, T z, T* out) {
-    const LegendreRecurrence<T>& t = legendreRecurrence<T>();
+void evalByTable(int shOrder, T x, T y, T z, T* out) {
+    constexpr const LegendreRecurrence<T>& t = kLegendreRecurrence<T>;
     T cosPart = 1, sinPart = 0;
     for (int m = 0; m < shOrder; ++m) {
         T before = 0, here = t.diagonal[m];
@@ -36,6 +37,40 @@ void evalScalar(int shOrder, T x, T y, T z, T* out) {
     }
 }
 
+template <int N>
+[[gnu::always_inline]] inline void evalStraightLine(const Vec3f& d, float* out) {
+    detail::evalShStraightLine<N, float>(
+        d.x(), d.y(), d.z(), [&](int i, float value) __attribute__((always_inline)) { out[i] = value; });
+}
+
+void evalFloat(int shOrder, const Vec3f& d, float* out) {
+    static_assert(detail::kMaxStraightLineOrder == 10);
+    switch (shOrder) {
+        case 1:
+            return evalStraightLine<1>(d, out);
+        case 2:
+            return evalStraightLine<2>(d, out);
+        case 3:
+            return evalStraightLine<3>(d, out);
+        case 4:
+            return evalStraightLine<4>(d, out);
+        case 5:
+            return evalStraightLine<5>(d, out);
+        case 6:
+            return evalStraightLine<6>(d, out);
+        case 7:
+            return evalStraightLine<7>(d, out);
+        case 8:
+            return evalStraightLine<8>(d, out);
+        case 9:
+            return evalStraightLine<9>(d, out);
+        case 10:
+            return evalStraightLine<10>(d, out);
+        default:
+            return evalByTable<float>(shOrder, d.x(), d.y(), d.z(), out);
+    }
+}
+
 void checkOrder(int shOrder) {
     PRT_CHECK_LE(1, shOrder);
     PRT_CHECK_LE(shOrder, kMaxShOrder);
@@ -46,13 +81,13 @@ void checkOrder(int shOrder) {
 void evalSh(int shOrder, const Vec3f& direction, std::span<float> out) {
     checkOrder(shOrder);
     PRT_CHECK_EQ(out.size(), size_t(shCount(shOrder)));
-    evalScalar<float>(shOrder, direction.x(), direction.y(), direction.z(), out.data());
+    evalFloat(shOrder, direction, out.data());
 }
 
 void evalSh(int shOrder, const Vec3d& direction, std::span<double> out) {
     checkOrder(shOrder);
     PRT_CHECK_EQ(out.size(), size_t(shCount(shOrder)));
-    evalScalar<double>(shOrder, direction.x(), direction.y(), direction.z(), out.data());
+    evalByTable<double>(shOrder, direction.x(), direction.y(), direction.z(), out.data());
 }
 
 std::vector<float> projectShSamples(int shOrder, std::span<const Vec3f> directions,

@@ -1,82 +1,95 @@
-// Spherical harmonics of many directions: blocks of 32, structure of arrays, bands from the bottom up so that
-// all m of a band are independent chains; then a transposition in 4×4 tiles into rows.
-// Recurrences as in sh.cpp [Sloan2008, A2].
+// Spherical harmonics of many directions, sixteen at once: straight-line code for few bands, loops from the
+// bottom band up for many, so that all m of a band are independent chains. Rows come from a transposition in
+// 4×4 tiles. Recurrences as in sh.cpp [Sloan2008, A2].
 #include <algorithm>
 
 #include "precompute/base/check.h"
 #include "precompute/base/parallel.h"
 #include "precompute/math/sh.h"
+#include "precompute/math/sh_lanes.h"
 #include "precompute/math/sh_legendre.h"
+#include "precompute/math/sh_straight_line.h"
 
 namespace prt {
 namespace {
 
-// More than 16, or GCC unrolls the loops over lanes completely before it could vectorise them.
-constexpr int kLanes = 32;
+using detail::kLanes;
+using detail::LaneColumns;
+using detail::Lanes;
+using detail::LanesInArray;
 
-/// One function pair ±m: q = (rise z) one − fall two, and its products with the two parts of (x + iy)^m.
-[[gnu::always_inline]] inline void evalStep(float rise, float fall, const float* __restrict z,
-                                            const float* __restrict one, const float* __restrict two,
-                                            const float* __restrict cosPart, const float* __restrict sinPart,
-                                            float* __restrict q, float* __restrict outCos,
-                                            float* __restrict outSin) {
-    for (int k = 0; k < kLanes; ++k) {
-        const float value = rise * z[k] * one[k] - fall * two[k];
-        q[k] = value;
-        outSin[k] = value * sinPart[k];
-        outCos[k] = value * cosPart[k];
+/// Any number of bands.
+[[gnu::always_inline]] inline void evalByTable(int shOrder, const Lanes& x, const Lanes& y, const Lanes& z,
+                                               const LaneColumns& out) {
+    const LegendreRecurrence<float>& t = kLegendreRecurrence<float>;
+    Lanes q[legendreCount(kMaxShOrder)];
+    Lanes cosPart[kMaxShOrder], sinPart[kMaxShOrder];
+    cosPart[0] = Lanes{} + 1.0f;
+    sinPart[0] = Lanes{};
+    for (int m = 1; m < shOrder; ++m) {
+        cosPart[m] = x * cosPart[m - 1] - y * sinPart[m - 1];
+        sinPart[m] = x * sinPart[m - 1] + y * cosPart[m - 1];
     }
-}
-
-[[gnu::always_inline]] inline void evalDiagonal(float diagonal, const float* __restrict cosPart,
-                                                const float* __restrict sinPart, float* __restrict q,
-                                                float* __restrict outCos, float* __restrict outSin) {
-    for (int k = 0; k < kLanes; ++k) {
-        q[k] = diagonal;
-        outSin[k] = diagonal * sinPart[k];
-        outCos[k] = diagonal * cosPart[k];
-    }
-}
-
-/// (c', s') = (x + iy) (c + is).
-[[gnu::always_inline]] inline void raisePower(const float* __restrict x, const float* __restrict y,
-                                              const float* __restrict c, const float* __restrict s,
-                                              float* __restrict cNext, float* __restrict sNext) {
-    for (int k = 0; k < kLanes; ++k) {
-        cNext[k] = x[k] * c[k] - y[k] * s[k];
-        sNext[k] = x[k] * s[k] + y[k] * c[k];
-    }
-}
-
-/// @param xyz  [3][kLanes]   @param out  [n²][kLanes]
-PRT_TARGET_CLONES void evalBlock(const LegendreRecurrence<float>& t, int shOrder, const float* __restrict xyz,
-                                 float* __restrict out) {
-    alignas(64) float q[legendreCount(kMaxShOrder)][kLanes];
-    alignas(64) float cosPart[kMaxShOrder][kLanes], sinPart[kMaxShOrder][kLanes];
-    alignas(64) float unused[kLanes];  // where the sine part of m = 0 goes
-    const float *x = xyz, *y = xyz + kLanes, *z = xyz + 2 * kLanes;
-    for (int k = 0; k < kLanes; ++k) {
-        cosPart[0][k] = 1;
-        sinPart[0][k] = 0;
-    }
-    for (int m = 1; m < shOrder; ++m)
-        raisePower(x, y, cosPart[m - 1], sinPart[m - 1], cosPart[m], sinPart[m]);
-    for (int l = 0; l < shOrder; ++l) {
-        float* const middle = out + shIndex(l, 0) * kLanes;
-        for (int m = 0; m < l; ++m) {
+    for (int l = 0; l < shOrder; ++l)
+        for (int m = 0; m <= l; ++m) {
             const int i = legendreIndex(l, m);
-            const float* one = q[legendreIndex(l - 1, m)];
-            // fall is 0 where there is no second function below.
-            const float* two = m < l - 1 ? q[legendreIndex(l - 2, m)] : one;
-            evalStep(t.rise[i], t.fall[i], z, one, two, cosPart[m], sinPart[m], q[i], middle + m * kLanes,
-                     m > 0 ? middle - m * kLanes : unused);
+            if (m == l) {
+                q[i] = Lanes{} + t.diagonal[l];
+            } else {
+                const Lanes& one = q[legendreIndex(l - 1, m)];
+                // fall is 0 where there is no second function below.
+                const Lanes& two = m < l - 1 ? q[legendreIndex(l - 2, m)] : one;
+                q[i] = t.rise[i] * z * one - t.fall[i] * two;
+            }
+            // For m = 0 the first store is overwritten by the second.
+            out[size_t(shIndex(l, -m))] = q[i] * sinPart[m];
+            out[size_t(shIndex(l, m))] = q[i] * cosPart[m];
         }
-        evalDiagonal(t.diagonal[l], cosPart[l], sinPart[l], q[legendreIndex(l, l)], middle + l * kLanes,
-                     l > 0 ? middle - l * kLanes : unused);
+}
+
+template <int N>
+[[gnu::always_inline]] inline void evalByStraightLine(const Lanes& x, const Lanes& y, const Lanes& z,
+                                                      const LaneColumns& out) {
+    detail::evalShStraightLine<N, Lanes>(
+        x, y, z, [&](int i, const Lanes& value) __attribute__((always_inline)) { out[size_t(i)] = value; });
+}
+
+/// Sixteen directions.
+/// @param x, y, z  [16]   @param out  [n²] rows of 16, stride apart
+PRT_TARGET_CLONES void evalBlock(int shOrder, const float* xIn, const float* yIn, const float* zIn,
+                                 float* outIn, size_t stride) {
+    const Lanes x = *reinterpret_cast<const LanesInArray*>(xIn);
+    const Lanes y = *reinterpret_cast<const LanesInArray*>(yIn);
+    const Lanes z = *reinterpret_cast<const LanesInArray*>(zIn);
+    const LaneColumns out{outIn, stride};
+    static_assert(detail::kMaxStraightLineOrder == 10);
+    switch (shOrder) {
+        case 1:
+            return evalByStraightLine<1>(x, y, z, out);
+        case 2:
+            return evalByStraightLine<2>(x, y, z, out);
+        case 3:
+            return evalByStraightLine<3>(x, y, z, out);
+        case 4:
+            return evalByStraightLine<4>(x, y, z, out);
+        case 5:
+            return evalByStraightLine<5>(x, y, z, out);
+        case 6:
+            return evalByStraightLine<6>(x, y, z, out);
+        case 7:
+            return evalByStraightLine<7>(x, y, z, out);
+        case 8:
+            return evalByStraightLine<8>(x, y, z, out);
+        case 9:
+            return evalByStraightLine<9>(x, y, z, out);
+        case 10:
+            return evalByStraightLine<10>(x, y, z, out);
+        default:
+            return evalByTable(shOrder, x, y, z, out);
     }
 }
 
-/// rows[k·columns + i] = lanes[i·kLanes + k] for k < rowCount.
+/// rows[k·columns + i] = lanes[i·int(kLanes) + k] for k < rowCount.
 void transposeBlock(const float* lanes, int columns, int rowCount, float* rows) {
     using Vec4 [[gnu::vector_size(16), gnu::aligned(4), gnu::may_alias]] = float;
     const auto load = [](const float* p) { return *reinterpret_cast<const Vec4*>(p); };
@@ -84,8 +97,9 @@ void transposeBlock(const float* lanes, int columns, int rowCount, float* rows) 
         const bool wholeRows = k + 4 <= rowCount;
         int i = 0;
         for (; wholeRows && i + 4 <= columns; i += 4) {
-            const float* p = lanes + i * kLanes + k;
-            const auto a = load(p), b = load(p + kLanes), c = load(p + 2 * kLanes), d = load(p + 3 * kLanes);
+            const float* p = lanes + i * int(kLanes) + k;
+            const auto a = load(p), b = load(p + int(kLanes)), c = load(p + 2 * int(kLanes)),
+                       d = load(p + 3 * int(kLanes));
             const auto abLow = __builtin_shufflevector(a, b, 0, 4, 1, 5);
             const auto abHigh = __builtin_shufflevector(a, b, 2, 6, 3, 7);
             const auto cdLow = __builtin_shufflevector(c, d, 0, 4, 1, 5);
@@ -97,28 +111,51 @@ void transposeBlock(const float* lanes, int columns, int rowCount, float* rows) 
             *reinterpret_cast<Vec4*>(r + 3 * columns) = __builtin_shufflevector(abHigh, cdHigh, 2, 3, 6, 7);
         }
         for (; i < columns; ++i)
-            for (int r = k; r < std::min(k + 4, rowCount); ++r) rows[r * columns + i] = lanes[i * kLanes + r];
+            for (int r = k; r < std::min(k + 4, rowCount); ++r)
+                rows[r * columns + i] = lanes[i * int(kLanes) + r];
     }
 }
 
 }  // namespace
 
+void evalShSoa(int shOrder, std::span<const float> x, std::span<const float> y, std::span<const float> z,
+               std::span<float> out, size_t stride) {
+    PRT_CHECK_LE(1, shOrder);
+    PRT_CHECK_LE(shOrder, kMaxShOrder);
+    const size_t count = x.size(), functions = size_t(shCount(shOrder));
+    PRT_CHECK_EQ(y.size(), count);
+    PRT_CHECK_EQ(z.size(), count);
+    PRT_CHECK_LE(count, stride);
+    if (count == 0) return;
+    PRT_CHECK_LE((functions - 1) * stride + count, out.size());
+    size_t k = 0;
+    for (; k + kLanes <= count; k += kLanes) evalBlock(shOrder, &x[k], &y[k], &z[k], &out[k], stride);
+    if (k == count) return;
+    // The rest goes through a block of its own.
+    float rest[3][kLanes] = {};
+    float block[shCount(kMaxShOrder) * kLanes];
+    std::copy(x.begin() + ptrdiff_t(k), x.end(), rest[0]);
+    std::copy(y.begin() + ptrdiff_t(k), y.end(), rest[1]);
+    std::copy(z.begin() + ptrdiff_t(k), z.end(), rest[2]);
+    evalBlock(shOrder, rest[0], rest[1], rest[2], block, kLanes);
+    for (size_t i = 0; i < functions; ++i) std::copy_n(block + i * kLanes, count - k, &out[i * stride + k]);
+}
+
 void evalShBatch(int shOrder, std::span<const Vec3f> directions, std::span<float> out) {
     PRT_CHECK_LE(1, shOrder);
     PRT_CHECK_LE(shOrder, kMaxShOrder);
     PRT_CHECK_EQ(out.size(), directions.size() * size_t(shCount(shOrder)));
-    const LegendreRecurrence<float>& t = legendreRecurrence<float>();
-    const int columns = shCount(shOrder);
-    alignas(64) float xyz[3 * kLanes];
-    alignas(64) float lanes[shCount(kMaxShOrder) * kLanes];
+    const size_t columns = size_t(shCount(shOrder));
+    float xyz[3][kLanes];
+    float block[shCount(kMaxShOrder) * kLanes];
     for (size_t first = 0; first < directions.size(); first += kLanes) {
-        const int n = int(std::min<size_t>(kLanes, directions.size() - first));
-        for (int k = 0; k < kLanes; ++k) {
-            const Vec3f& d = directions[first + size_t(std::min(k, n - 1))];
-            for (int axis = 0; axis < 3; ++axis) xyz[axis * kLanes + k] = d[axis];
+        const size_t n = std::min(kLanes, directions.size() - first);
+        for (size_t k = 0; k < kLanes; ++k) {
+            const Vec3f& d = directions[first + std::min(k, n - 1)];
+            for (int axis = 0; axis < 3; ++axis) xyz[axis][k] = d[axis];
         }
-        evalBlock(t, shOrder, xyz, lanes);
-        transposeBlock(lanes, columns, n, out.data() + first * size_t(columns));
+        evalBlock(shOrder, xyz[0], xyz[1], xyz[2], block, kLanes);
+        transposeBlock(block, int(columns), int(n), out.data() + first * columns);
     }
 }
 

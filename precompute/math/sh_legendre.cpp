@@ -9,33 +9,11 @@
 
 namespace prt {
 
-template <typename T>
-const LegendreRecurrence<T>& legendreRecurrence() {
-    static const LegendreRecurrence<T> table = [] {
-        LegendreRecurrence<T> t{};
-        double diagonal = std::sqrt(1 / (4 * std::numbers::pi));
-        for (int m = 0; m < kMaxShOrder; ++m) {
-            if (m > 0) diagonal *= -std::sqrt((2.0 * m + 1) / (2.0 * m));  // the sign is Condon-Shortley's
-            t.diagonal[m] = T(m > 0 ? diagonal * std::numbers::sqrt2 : diagonal);
-            for (int l = m + 1; l < kMaxShOrder; ++l) {
-                const double rise = std::sqrt((4.0 * l * l - 1) / (double(l) * l - double(m) * m));
-                const double p = l - 1.0;
-                t.rise[legendreIndex(l, m)] = T(rise);
-                t.fall[legendreIndex(l, m)] = T(rise * std::sqrt((p * p - double(m) * m) / (4 * p * p - 1)));
-            }
-        }
-        return t;
-    }();
-    return table;
-}
-template const LegendreRecurrence<float>& legendreRecurrence<float>();
-template const LegendreRecurrence<double>& legendreRecurrence<double>();
-
 void evalShLegendre(int shOrder, double z, std::span<double> out) {
     PRT_CHECK_LE(1, shOrder);
     PRT_CHECK_LE(shOrder, kMaxShOrder);
     PRT_CHECK_EQ(out.size(), size_t(legendreCount(shOrder)));
-    const LegendreRecurrence<double>& t = legendreRecurrence<double>();
+    constexpr const LegendreRecurrence<double>& t = kLegendreRecurrence<double>;
     const double sinTheta = std::sqrt(std::max(0.0, (1 - z) * (1 + z)));
     double sinPower = 1;
     for (int m = 0; m < shOrder; ++m) {

@@ -1,6 +1,7 @@
 // What the spherical harmonics are made of: normalised Legendre functions and Gauss-Legendre nodes.
 #pragma once
 
+#include <numbers>
 #include <span>
 #include <vector>
 
@@ -21,8 +22,38 @@ struct LegendreRecurrence {
     T rise[legendreCount(kMaxShOrder)];
     T fall[legendreCount(kMaxShOrder)];
 };
+
+/// √a at compile time, a > 0, by Newton's iteration.
+consteval double constantSquareRoot(double a) {
+    double root = a > 1 ? a : 1;
+    for (;;) {  // falls until rounding stops it
+        const double next = 0.5 * (root + a / root);
+        if (next >= root) return root;
+        root = next;
+    }
+}
+
 template <typename T>
-const LegendreRecurrence<T>& legendreRecurrence();
+consteval LegendreRecurrence<T> makeLegendreRecurrence() {
+    LegendreRecurrence<T> t{};
+    double diagonal = constantSquareRoot(1 / (4 * std::numbers::pi));
+    for (int m = 0; m < kMaxShOrder; ++m) {
+        // the sign is Condon-Shortley's
+        if (m > 0) diagonal *= -constantSquareRoot((2.0 * m + 1) / (2.0 * m));
+        t.diagonal[m] = T(m > 0 ? diagonal * std::numbers::sqrt2 : diagonal);
+        for (int l = m + 1; l < kMaxShOrder; ++l) {
+            const double p = l - 1.0;
+            const double rise = constantSquareRoot((4.0 * l * l - 1) / (double(l) * l - double(m) * m));
+            const double ratio = (p * p - double(m) * m) / (4 * p * p - 1);
+            t.rise[legendreIndex(l, m)] = T(rise);
+            t.fall[legendreIndex(l, m)] = T(l > m + 1 ? rise * constantSquareRoot(ratio) : 0);
+        }
+    }
+    return t;
+}
+/// The constants for T float and double.
+template <typename T>
+inline constexpr LegendreRecurrence<T> kLegendreRecurrence = makeLegendreRecurrence<T>();
 
 /// N_lm(z) with Y_lm = N_lm cos(m φ) and Y_l,-m = N_lm sin(m φ), sign and √2 included.
 /// @param z    −1..1

@@ -228,6 +228,65 @@ TEST(ShBatch, ADirectionsRowDoesNotDependOnItsNeighbours) {
     }
 }
 
+TEST(ShSoa, EqualsSingleEvaluationForEveryOrderLengthAndStride) {
+    test::RandomInput random(6);
+    constexpr float kGuard = 12345;
+    for (int n = 1; n <= kMaxShOrder; ++n)
+        for (const size_t count : {0u, 1u, 15u, 16u, 17u, 53u})
+            for (const size_t gap : {0u, 3u}) {
+                std::vector<float> axes[3];
+                std::vector<std::vector<double>> exact;
+                for (size_t k = 0; k < count; ++k) {
+                    const Vec3f d = random.direction().cast<float>();
+                    for (int a = 0; a < 3; ++a) axes[a].push_back(d[a]);
+                    exact.push_back(evaluate(n, d.cast<double>()));
+                }
+                const size_t functions = size_t(shCount(n)), stride = count + gap;
+                // the gap behind the last row is not asked for
+                std::vector<float> out(functions * stride - (count > 0 ? gap : 0), kGuard);
+                evalShSoa(n, axes[0], axes[1], axes[2], out, stride);
+                for (size_t j = 0; j < out.size(); ++j) {
+                    const size_t i = j / stride, k = j % stride;
+                    if (k >= count) {
+                        ASSERT_EQ(out[j], kGuard) << n << ' ' << count;
+                        continue;
+                    }
+                    const int l = int(std::sqrt(double(i)));
+                    ASSERT_NEAR(double(out[j]), exact[k][i], (l < 10 ? 2e-6 : 8e-6) * bandScale(l))
+                        << n << ' ' << count;
+                }
+            }
+}
+
+TEST(ShSoa, ADirectionsValuesDoNotDependOnItsPlace) {
+    std::vector<float> x, y, z;
+    for (const Vec3f& d : sphericalFibonacci(37)) {
+        x.push_back(d.x());
+        y.push_back(d.y());
+        z.push_back(d.z());
+    }
+    for (const int n : {6, 12}) {
+        const size_t functions = size_t(shCount(n));
+        std::vector<float> all(functions * 37), one(functions);
+        evalShSoa(n, x, y, z, all, 37);
+        for (size_t k = 0; k < 37; ++k) {
+            evalShSoa(n, std::span(&x[k], 1), std::span(&y[k], 1), std::span(&z[k], 1), one, 1);
+            for (size_t i = 0; i < functions; ++i) EXPECT_EQ(one[i], all[i * 37 + k]) << i << ' ' << k;
+        }
+    }
+}
+
+TEST(ShSoaDeathTest, RefusesLengthsThatDoNotFit) {
+    const std::vector<float> two(2), three(3);
+    std::vector<float> out(12);
+    EXPECT_DEATH(evalShSoa(2, three, two, three, out, 3), "2 against 3");
+    EXPECT_DEATH(evalShSoa(2, three, three, two, out, 3), "2 against 3");
+    EXPECT_DEATH(evalShSoa(2, three, three, three, out, 2), "3 against 2");
+    EXPECT_DEATH(evalShSoa(2, three, three, three, std::span(out).first(11), 3), "12 against 11");
+    EXPECT_DEATH(evalShSoa(0, three, three, three, out, 3), "1 against 0");
+    EXPECT_DEATH(evalShSoa(25, three, three, three, out, 3), "25 against 24");
+}
+
 TEST(ShDeathTest, RefusesOrdersOutsideTheRange) {
     std::vector<double> out(1);
     EXPECT_DEATH(evalSh(0, Vec3d(0, 0, 1), std::span<double>(out)), "1 against 0");
