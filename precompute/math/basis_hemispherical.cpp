@@ -4,9 +4,9 @@
 // sign (−1)^m. Evaluated without angles: (z(1 − z))^{m/2} e^{imφ} = (x + iy)^m u^{m/2} with u = z/(1 + z).
 //
 // Makhotkin's own formula is in none of the papers at hand and could not be confirmed: ours follows from what
-// they say of it, "shifted adjoint Jacobi polynomials", 0 or constant on the rim. Adjoint reads as
-// associated: d^m/dz^m P_l^{(0,1)}(2z − 1), orthogonal with the weight cosθ of radiative flux. For |m| = β =
-// 0 of the papers' other translation the span is the same, and so are least-squares fits.
+// they say of it, "shifted adjoint Jacobi polynomials" [Gautron2004, Sec. 2], 0 or constant on the rim
+// [HabelWimmer2010, Sec. 2.2]. Adjoint reads as associated: d^m/dz^m P_l^{(0,1)}(2z − 1), orthogonal with the
+// weight cosθ of radiative flux. Per m the span is that of hemispherical harmonics, and so are fits.
 #include <algorithm>
 #include <cmath>
 #include <limits>
