@@ -18,7 +18,10 @@ struct MeasureCommand {
     void (*run)(int, char**);
 };
 
-const std::vector<MeasureCommand> kMeasureCommands = {};
+const std::vector<MeasureCommand> kMeasureCommands = {
+    {"basis", "Habel Fig. 3, Gautron Figs. 4, 5 and 10: bases against signals and coefficients",
+     runMeasureBasis},
+};
 
 std::string usage() {
     std::string text =

@@ -41,7 +41,9 @@ std::string axes(const Panel& panel) {
     out += panel.logX ? "set logscale x\n" : "unset logscale x\n";
     out += panel.logY ? "set logscale y\nset format y \"%.0e\"\n" : "unset logscale y\nset format y \"%g\"\n";
     out += fmt::format("set xlabel {}\nset ylabel {}\n", quoted(panel.xLabel), quoted(panel.yLabel));
-    return out + "set xtics autofreq norotate\nset autoscale\nset grid lc rgb \"#dddddd\"\nset border 3\n";
+    return out +
+           "set xtics autofreq norotate nomirror\nset ytics nomirror\nset autoscale\nset grid lc rgb "
+           "\"#dddddd\"\nset border 3\n";
 }
 
 std::string curves(const Panel& panel, size_t index) {
@@ -89,13 +91,16 @@ std::string surface(const Panel& panel, size_t index) {
         }
         data += '\n';
     }
-    data += "EOD\nunset border\nunset tics\nunset key\nunset xlabel\nunset ylabel\nset view 60, 40, 1.5\n";
-    data += "set view equal xyz\nset pm3d depthorder border lc rgb \"#444444\" lw 0.15\nunset colorbox\n";
+    data += "EOD\nunset border\nunset tics\nunset key\nunset xlabel\nunset ylabel\nset view 60, 40, 1.6\n";
+    data += "set view equal xyz\nset xrange [-1:1]\nset yrange [-1:1]\nset zrange [-1:1]\n";
+    data += "set pm3d depthorder border lc rgb \"#444444\" lw 0.15\nunset colorbox\n";
     data += "set palette defined (-1 \"#2166ac\", -0.001 \"#92c5de\", 0.001 \"#f4a582\", 1 \"#b2182b\")\n";
     return data + fmt::format("set cbrange [-1:1]\nsplot $p{} using 1:2:3:4 with pm3d\n", index);
 }
 
 std::string panelScript(const Panel& panel, size_t index) {
+    if (panel.surface.points.empty() && panel.series.empty() && panel.bars.empty())
+        return "set multiplot next\n";
     std::string out = fmt::format("set title {} font \",11\"\n", quoted(panel.title));
     if (!panel.surface.points.empty()) return out + surface(panel, index);
     return out + (panel.bars.empty() ? curves(panel, index) : bars(panel, index));

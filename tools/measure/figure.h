@@ -22,10 +22,10 @@ struct Bar {
 /// A function drawn as a surface: quads of a grid, coloured by sign.
 struct Surface {
     int rows = 0, columns = 0;
-    std::vector<std::array<double, 4>> points;  ///< [rows×columns] x, y, z, value
+    std::vector<std::array<double, 4>> points;  ///< [rows×columns] x, y, z, value, each in [−1, 1]
 };
 
-/// One panel; exactly one of series, bars and surface is given.
+/// One panel; at most one of series, bars and surface is given, none leaves its place empty.
 struct Panel {
     std::string title, xLabel = {}, yLabel = {};
     bool logX = false, logY = false;
