@@ -5,14 +5,23 @@
 //   sh         spherical harmonics, n² functions, orthonormal over the sphere
 //   esh        even reflection: the function is mirrored below the horizon, f(x, y, −z) = f(x, y, z); only
 //              √2·Y_lm with l + m even remain, n(n + 1)/2 of n², orthonormal over the hemisphere
-//   lsosh      spherical harmonics as least-squares fit over the hemisphere: n², not orthonormal there
+//              [Gautron2004, Sec. 2]
+//   lsosh      spherical harmonics as least-squares fit over the hemisphere: n², not orthonormal there. Their
+//              Gram matrix has condition 14 for n = 2, 4e6 for 6, 3e12 for 10, 3e15 for 12 and 9e16 for 13:
+//              projection is exact through n = 12, its coefficients to 1e-16 of the condition's square root;
+//              beyond, combinations below 1e-8 of the strongest are left out. [Gautron2004, Sec. 2]
 //   hsh        hemispherical harmonics √2·Y_lm(2cosθ − 1, φ), n², orthonormal over the hemisphere
+//              [Gautron2004, Eqs. 5-9]
 //   makhotkin  hemispherical harmonics from associated shifted Jacobi polynomials, n², orthonormal over the
-//              hemisphere with the weight cosθ
+//              hemisphere with the weight cosθ. The formula is ours, from the literature's description of
+//              [Makhotkin1996]; unconfirmed:
+//                c_lm (z(1 − z))^{|m|/2} P_{l−|m|}^{(|m|, |m|+1)}(2z − 1)·{√2 cos mφ, 1, √2 sin|m|φ}
 //   zernike    Zernike polynomials on the disc of radius √2·sin(θ/2), n(n + 1)/2, orthonormal over the
-//              hemisphere
+//              hemisphere [Koenderink1996]
 //   h          H-basis: orders 2 (4 functions) and 3 (6 functions), orthonormal over the hemisphere
+//              [HabelWimmer2010, Eqs. 8-13]
 //   hl2        Half-Life 2 basis, 3 functions (order 2), orthonormal over the hemisphere
+//              [HabelWimmer2010, Eqs. 1-2]
 // Functions of sh, esh, lsosh, hsh, makhotkin are in the order of shIndex (esh: without those of odd l + m);
 // those of zernike by degree d and m = −d, −d + 2, …, d: index d(d + 1)/2 + (d + m)/2.
 #pragma once

@@ -29,22 +29,21 @@ class HBasis final : public detail::BasisOf<HBasis> {
     }
 };
 
-const std::array<Vec3d, 3>& halfLife2Directions() {
-    static const std::array<Vec3d, 3> directions = [] {
-        const double a = 1 / std::sqrt(6.0), b = 1 / std::sqrt(2.0), c = 1 / std::sqrt(3.0);
-        return std::array<Vec3d, 3>{Vec3d(-a, -b, c), Vec3d(-a, b, c), Vec3d(2 * a, 0, c)};
-    }();
-    return directions;
-}
-const double kHalfLife2Norm = std::sqrt(3 / (2 * pi));
+// 1/√6, 1/√2, 1/√3
+constexpr double kA = std::numbers::inv_sqrt3 / std::numbers::sqrt2, kB = 1 / std::numbers::sqrt2,
+                 kC = std::numbers::inv_sqrt3;
+constexpr std::array<std::array<double, 3>, 3> kHalfLife2Directions = {
+    {{-kA, -kB, kC}, {-kA, kB, kC}, {2 * kA, 0, kC}}};
+/// √(3/2π)
+constexpr double kHalfLife2Norm = std::numbers::sqrt3 * std::numbers::inv_sqrtpi / std::numbers::sqrt2;
 
 class HalfLife2Basis final : public detail::BasisOf<HalfLife2Basis> {
   public:
     HalfLife2Basis() : BasisOf("hl2", 2, 3, BasisDomain::UpperHemisphere, true) {}
     template <typename T>
     void functions(const T& x, const T& y, const T& z, T* out) const {
-        for (const Vec3d& h : halfLife2Directions())
-            *out++ = kHalfLife2Norm * (h.x() * x + h.y() * y + h.z() * z);
+        for (const std::array<double, 3>& h : kHalfLife2Directions)
+            *out++ = kHalfLife2Norm * (h[0] * x + h[1] * y + h[2] * z);
     }
 };
 
@@ -58,7 +57,7 @@ std::unique_ptr<Basis> detail::makeIrradianceFamily(const std::string& name, int
 Vec3d directionalOcclusionVector(std::span<const double> coefficients) {
     PRT_CHECK_EQ(coefficients.size(), size_t(3));
     Vec3d sum = Vec3d::Zero();
-    for (size_t i = 0; i < 3; ++i) sum += coefficients[i] * halfLife2Directions()[i];
+    for (size_t i = 0; i < 3; ++i) sum += coefficients[i] * Vec3d(kHalfLife2Directions[i].data());
     return kHalfLife2Norm * sum;
 }
 

@@ -39,9 +39,7 @@ RadialRecurrence jacobiRadial(int m, int alpha, int beta) {
     };
     const auto offDiagonal = [&](double k) {
         const double s = 2 * k + sum;
-        // (k + sum)/(s − 1) is 1 for k = 1, also where both vanish
-        const double ratio = k == 1 ? 1 : (k + sum) / (s - 1);
-        return std::sqrt(4 * k * (k + a) * (k + b) * ratio / (s * s * (s + 1)));
+        return std::sqrt(4 * k * (k + a) * (k + b) * (k + sum) / (s * s * (s + 1) * (s - 1)));
     };
     // ∫ (1 − v)^α v^β dv = α! β! / (α + β + 1)!
     double integral = 1.0 / (beta + 1);

@@ -13,13 +13,13 @@
 
 namespace prt::detail {
 
-/// A number and its derivatives by x, y and z.
+/// A number and its derivatives by x, y and z; uninitialised where nothing is given, as numbers are.
 struct Dual {
-    double value = 0;
-    Vec3d slope = Vec3d::Zero();
+    double value;
+    Vec3d slope;
 
     Dual() = default;
-    Dual(double v) : value(v) {}  // NOLINT: constants mix freely
+    Dual(double v) : value(v), slope(Vec3d::Zero()) {}  // NOLINT: constants mix freely
     Dual(double v, const Vec3d& s) : value(v), slope(s) {}
 };
 inline Dual operator+(const Dual& a, const Dual& b) { return {a.value + b.value, a.slope + b.slope}; }

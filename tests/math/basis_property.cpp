@@ -311,6 +311,24 @@ TEST_P(HemisphericalHarmonicsBattery, GradientsOnTheRim) {
     }
 }
 
+TEST_P(HemisphericalHarmonicsBattery, GradientsNearTheRimGrow) {
+    std::vector<Vec3d> gradient(size_t(basis_->count()));
+    for (const double z : {1e-6, 1e-3, 0.05}) {
+        const Vec3d d = test::directionOf(z, 0.9);
+        const double step = 0.01 * z;  // √z is smooth over a hundredth of z: 1e-8 of the slope is lost
+        basis_->evalGradient(d, gradient);
+        for (const Vec3d& t : tangentsOf(d)) {
+            const std::vector<double> a = valuesAt(*basis_, d, t, -2 * step),
+                                      b = valuesAt(*basis_, d, t, -step), e = valuesAt(*basis_, d, t, step),
+                                      f = valuesAt(*basis_, d, t, 2 * step);
+            for (size_t i = 0; i < gradient.size(); ++i)
+                ASSERT_NEAR(gradient[i].dot(t), (a[i] - 8 * b[i] + 8 * e[i] - f[i]) / (12 * step),
+                            1e-7 * order() * order() / std::sqrt(z))
+                    << i << " at z = " << z;
+        }
+    }
+}
+
 TEST_P(HemisphericalHarmonicsBattery, AreConstantOnTheRim) {
     const std::vector<double> first = evaluate(*basis_, {1, 0, 0});
     for (const double phi : {0.4, 1.0, 2.2, 3.9, 5.5}) {

@@ -186,6 +186,22 @@ TEST(Lsosh, FitsBetterThanProjectionContinuedByZero) {
     EXPECT_LT(leastSquaresError(*lsosh), 0.05 * plainError);
 }
 
+TEST(Lsosh, HighOrdersKeepCoefficientsBounded) {
+    // a kink has parts in every combination of functions, however small that is over the hemisphere
+    const auto kink = [](const Vec3d& d) { return std::abs(d.x() - 0.3); };
+    for (const int order : {12, 13, 17, 24}) {
+        const std::unique_ptr<Basis> basis = makeBasis("lsosh", order);
+        const std::vector<double> c = basis->project(kink);
+        double largest = 0;
+        for (const double value : c) largest = std::max(largest, std::abs(value));
+        EXPECT_LT(largest, 1e6) << order;
+        for (const double phi : {0.3, 1.2, 4.0}) {
+            const Vec3d d = test::directionOf(0.6, phi);
+            EXPECT_NEAR(basis->evalExpansion(c, d), kink(d), 0.1) << order;
+        }
+    }
+}
+
 /// d^m/dz^m P_l^(0, 1)(2z − 1), from (−1)^l (l + 1) Σ_k (−l)_k (l + 2)_k / ((2)_k k!) z^k.
 long double derivativeOfJacobi(int l, int m, long double z) {
     long double sum = 0, factor = (l % 2 ? -1 : 1) * (l + 1);
