@@ -235,8 +235,8 @@ TEST_P(EverySphereMap, LookupsAreContinuousAcrossEveryBorder) {
 }
 
 TEST_P(EverySphereMap, LookupsAreContinuousAlongRandomArcs) {
-    if (name() == "cube" || name() == "latitude-longitude") GTEST_SKIP() << "has jumps, see the header";
     const std::vector<double> table = tabulate(*map_, rough);
+    double worst = 0;
     for (int k = 0; k < 500; ++k) {
         // Halve the arc, always keep the half that changes more: ends at a jump if there is one.
         Vec3d a = random_.direction(), b = random_.direction();
@@ -248,7 +248,14 @@ TEST_P(EverySphereMap, LookupsAreContinuousAlongRandomArcs) {
             (first ? b : a) = middle;
             (first ? fb : fa) = fm;
         }
-        EXPECT_LT(std::abs(fa - fb), 6 * 1e-8 * 4 * size() + 6 * 2e-7);
+        worst = std::max(worst, std::abs(fa - fb));
+    }
+    // Arcs come as near as 1e-3 to the poles of a latitude-longitude map, where all columns meet.
+    const double steepness = name() == "latitude-longitude" ? 1000 : 1;
+    if (name() == "cube") {
+        EXPECT_GT(worst, 0.1);
+    } else {
+        EXPECT_LT(worst, 6 * 1e-8 * 4 * size() * steepness + 6 * 2e-7);
     }
 }
 
