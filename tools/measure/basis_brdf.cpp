@@ -71,15 +71,24 @@ void addScaled(std::span<double> a, double factor, std::span<const double> b) {
     for (size_t k = 0; k < a.size(); ++k) a[k] += factor * b[k];
 }
 
-/// Gram–Schmidt in the order of the functions, twice each: orthonormal functions of the same spans, so that
-/// projection on the first n² of them is the least-squares fit of order n.
+/// m of shIndex(l, m) = l(l + 1) + m.
+int azimuthalOrder(size_t index) {
+    const int band = int(std::sqrt(double(index)));
+    return int(index) - band * (band + 1);
+}
+
+/// Gram–Schmidt over spherical harmonics in their order, twice each: orthonormal functions of the same spans,
+/// so that projection on the first n² of them is the least-squares fit of order n. Functions of different m
+/// are orthogonal on these nodes as they are.
 void orthonormalise(SampledBasis& basis, std::span<const double> weights) {
     for (size_t i = 0; i < basis.count(); ++i) {
         throwIfInterrupted();
         for (int pass = 0; pass < 2; ++pass)
-            for (size_t j = 0; j < i; ++j)
+            for (size_t j = 0; j < i; ++j) {
+                if (azimuthalOrder(j) != azimuthalOrder(i)) continue;
                 addScaled(basis.function(i), -dot(weights, basis.function(i), basis.function(j)),
                           basis.function(j));
+            }
         const double scale = 1 / std::sqrt(dot(weights, basis.function(i), basis.function(i)));
         for (double& value : basis.function(i)) value *= scale;
     }

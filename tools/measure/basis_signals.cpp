@@ -95,8 +95,12 @@ struct SearchGrid {
 const SearchGrid& searchGrid(RadianceModel model) {
     static const auto make = [](BasisDomain domain) {
         SearchGrid grid;
-        for (const DomainNode& node : domainQuadrature(domain, 17))
+        for (const DomainNode& node : domainQuadrature(domain, 31))
             evalSh(kSmoothOrder, node.direction, grid.values.emplace_back());
+        for (int k = 0; k < 64; ++k) {  // no node is on the rim
+            const double azimuth = 2 * pi * k / 64;
+            evalSh(kSmoothOrder, Vec3d(std::cos(azimuth), std::sin(azimuth), 0), grid.values.emplace_back());
+        }
         return grid;
     };
     static const SearchGrid sphere = make(BasisDomain::Sphere), above = make(BasisDomain::UpperHemisphere);
@@ -160,7 +164,9 @@ EnvironmentLights environmentLights(const Environment& environment) {
     const LatLongView image = environment.view();
     const int width = std::min(image.width, 128), height = std::min(image.height, 64);
     const size_t count = size_t(width) * size_t(height);
-    EnvironmentLights lights{environment.name, std::vector<Vec3d>(count), {}};
+    EnvironmentLights lights{environment.source.starts_with("sky:") ? environment.source : environment.name,
+                             std::vector<Vec3d>(count),
+                             {}};
     for (auto& channel : lights.fluxes) channel.assign(count, 0.0);
     for (size_t i = 0; i < count; ++i)
         lights.directions[i] =

@@ -49,8 +49,9 @@ struct Radiance {
 
 /// Random radiance: `lights` directions, uniform over the hemisphere or the sphere, of exponential flux with
 /// mean 1 / lights, and smooth radiance: normally distributed coefficients of 4 bands, the constant moved so
-/// that the lowest radiance of the domain is 0, scaled to the flux ∫L dω = `smoothFlux` (over the hemisphere
-/// under AboveSurface). With smoothFlux = 1 both parts bring the same flux on average.
+/// that the lowest radiance of the domain is 0 (on a grid: not below −3 % of the highest), scaled to the flux
+/// ∫L dω = `smoothFlux` (over the hemisphere under AboveSurface). With smoothFlux = 1 both parts bring the
+/// same flux on average.
 /// @param lights      0…
 /// @param smoothFlux  >= 0
 Radiance drawRadiance(RadianceModel model, int lights, double smoothFlux, SignalRandom& random);

@@ -92,7 +92,7 @@ std::string surface(const Panel& panel, size_t index) {
         data += '\n';
     }
     data += "EOD\nunset border\nunset tics\nunset key\nunset xlabel\nunset ylabel\nset view 60, 40, 1.6\n";
-    data += "set view equal xyz\nset xrange [-1:1]\nset yrange [-1:1]\nset zrange [-1:1]\n";
+    data += "unset logscale\nset view equal xyz\nset xrange [-1:1]\nset yrange [-1:1]\nset zrange [-1:1]\n";
     data += "set pm3d depthorder border lc rgb \"#444444\" lw 0.15\nunset colorbox\n";
     data += "set palette defined (-1 \"#2166ac\", -0.001 \"#92c5de\", 0.001 \"#f4a582\", 1 \"#b2182b\")\n";
     return data + fmt::format("set cbrange [-1:1]\nsplot $p{} using 1:2:3:4 with pm3d\n", index);
