@@ -6,7 +6,7 @@
 
 #include "precompute/base/check.h"
 
-namespace prt {
+namespace prt::detail {
 namespace {
 
 SparseSwap sparse(const std::vector<double>& dense, int band) {
@@ -42,4 +42,4 @@ const SparseSwap& sparseSwap(int band) {
     return all[size_t(band)];
 }
 
-}  // namespace prt
+}  // namespace prt::detail

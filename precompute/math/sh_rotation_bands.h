@@ -15,10 +15,21 @@
 #include "precompute/math/sh.h"
 #include "precompute/math/sh_rotation_recurrence.h"
 
-namespace prt {
+namespace prt::detail {
 
-/// Bands below this one are code without loops; those above go through tables.
+/// Bands below this one are code without loops; those above go through tables. Under sanitizers straight-line
+/// code takes minutes to compile: there are fewer, and what is undefined in it would be so in the tables too.
+#if defined(__SANITIZE_ADDRESS__)
+inline constexpr int kUnrolledBands = 6;
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer)
+inline constexpr int kUnrolledBands = 6;
+#else
 inline constexpr int kUnrolledBands = 10;
+#endif
+#else
+inline constexpr int kUnrolledBands = 10;
+#endif
 
 /// S of all unrolled bands: entry (band, row + band, column + band).
 /// Entries that are zero come out as zero or as rounding; the smallest other one of band 23 is 2^-23.
@@ -66,19 +77,10 @@ constexpr auto swapRowColumns() {
     return columns;
 }
 
-/// How the lanes' values multiply with constants: overloaded by what counts multiplications.
-template <typename Scalar, typename V>
-[[gnu::always_inline]] constexpr V timesConstant(double constant, const V& v) {
-    if (constant == 1) return v;
-    if (constant == -1) return -v;
-    return Scalar(constant) * v;
-}
-
 template <typename Scalar, int kBand, int kRow, typename V, size_t... kTerm>
 [[gnu::always_inline]] inline void swapRow(const V* in, V& out, std::index_sequence<kTerm...>) {
     constexpr auto kColumns = swapRowColumns<kBand, kRow>();
-    out = (... + timesConstant<Scalar>(kSwapTables[kBand][kRow + kBand][size_t(kColumns[kTerm])],
-                                       in[kColumns[kTerm]]));
+    out = (... + (Scalar(kSwapTables[kBand][kRow + kBand][size_t(kColumns[kTerm])]) * in[kColumns[kTerm]]));
 }
 
 /// out = S in, both [2 kBand + 1].
@@ -96,8 +98,8 @@ enum ZyzAngle { kAlpha, kBeta, kGamma };
 /// computed as one short vector.
 template <typename A>
 struct ZyzMultiples {
-    alignas(32) A cosine[kMaxShOrder + 1][4];
-    alignas(32) A sine[kMaxShOrder + 1][4];
+    alignas(4 * sizeof(A)) A cosine[kMaxShOrder + 1][4];
+    alignas(4 * sizeof(A)) A sine[kMaxShOrder + 1][4];
 };
 
 /// Turns the pair (m, −m) about z: (c even − s odd, s even + c odd).
@@ -155,6 +157,13 @@ struct SparseSwap {
 /// @param band  kUnrolledBands <= band < kMaxShOrder
 const SparseSwap& sparseSwap(int band);
 
+/// Turns a band above the unrolled ones about z.
+template <ZyzAngle kAngle, typename V, typename A>
+[[gnu::always_inline]] inline void turnTableBand(int band, const ZyzMultiples<A>& angles, V* v) {
+    for (int m = 1; m <= band; ++m)
+        turnPair(angles.cosine[m][kAngle], angles.sine[m][kAngle], v[band + m], v[band - m]);
+}
+
 /// Rotates a band above the unrolled ones in place.
 template <typename Scalar, typename V, typename A>
 [[gnu::always_inline]] inline void rotateTableBand(int band, const ZyzMultiples<A>& angles, V* v) {
@@ -168,14 +177,12 @@ template <typename Scalar, typename V, typename A>
             to[r] = sum;
         }
     };
-    for (int m = 1; m <= band; ++m)
-        turnPair(angles.cosine[m][kGamma], angles.sine[m][kGamma], v[band + m], v[band - m]);
+    turnTableBand<kGamma>(band, angles, v);
     swap(v, w);
     for (int m = 1; m <= band; ++m)
         turnPairBack(angles.cosine[m][kBeta], angles.sine[m][kBeta], w[band + m], w[band - m]);
     swap(w, v);
-    for (int m = 1; m <= band; ++m)
-        turnPair(angles.cosine[m][kAlpha], angles.sine[m][kAlpha], v[band + m], v[band - m]);
+    turnTableBand<kAlpha>(band, angles, v);
 }
 
 /// Loads, rotates and stores one unrolled band; in and out point at coefficient 0 and may be the same.
@@ -200,4 +207,4 @@ template <typename Scalar, typename V, typename A, typename In, typename Out, si
                                             true)));
 }
 
-}  // namespace prt
+}  // namespace prt::detail

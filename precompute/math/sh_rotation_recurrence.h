@@ -5,7 +5,9 @@
 #include <cmath>
 #include <type_traits>
 
-namespace prt {
+#include "precompute/math/sh.h"
+
+namespace prt::detail {
 
 /// √x of x >= 0, also at compile time.
 constexpr double recurrenceSqrt(double x) {
@@ -46,14 +48,17 @@ constexpr void addNextBand(const BandView<const double>& one, const BandView<con
                            double weight, const BandView<double>& out) {
     const int l = below.band + 1;
     const auto p = [&](int i, int row, int column) { return recurrenceP(one, below, i, row, column); };
+    const double root = recurrenceSqrt(2.0);
+    double inverse[2 * kMaxShOrder - 1] = {};
+    for (int c = 0; c <= l; ++c)
+        inverse[l + c] = inverse[l - c] =
+            weight / recurrenceSqrt(double(c == l ? 2 * l * (2 * l - 1) : (l + c) * (l - c)));
     for (int row = -l; row <= l; ++row) {
         const int m = row < 0 ? -row : row;
         const double u = recurrenceSqrt(double((l + m) * (l - m)));
         const double v = 0.5 * recurrenceSqrt(double((m == 0 ? 2 : 1) * (l + m - 1) * (l + m)));
         const double w = -0.5 * recurrenceSqrt(double((l - m - 1) * (l - m)));
-        const double root = recurrenceSqrt(2.0);
         for (int column = -l; column <= l; ++column) {
-            const int c = column < 0 ? -column : column;
             double sum = m < l ? u * p(0, row, column) : 0;
             if (row == 0)
                 sum -= v * (p(1, 1, column) + p(-1, -1, column));
@@ -65,10 +70,9 @@ constexpr void addNextBand(const BandView<const double>& one, const BandView<con
                 sum += v * (p(1, row + 1, column) + p(-1, -row - 1, column));
             if (row > 0 && m < l - 1) sum += w * (p(1, row + 1, column) + p(-1, -row - 1, column));
             if (row < 0 && m < l - 1) sum += w * (p(1, row - 1, column) - p(-1, 1 - row, column));
-            const double denominator = double(c == l ? 2 * l * (2 * l - 1) : (l + c) * (l - c));
-            out(row, column) += weight * sum / recurrenceSqrt(denominator);
+            out(row, column) += inverse[l + column] * sum;
         }
     }
 }
 
-}  // namespace prt
+}  // namespace prt::detail

@@ -2,42 +2,18 @@
 #include "precompute/math/sh_rotation.h"
 
 #include <cmath>
-#include <numbers>
 
-#include "precompute/math/sh.h"
-#include "tests/math/random_input.h"
+#include "precompute/math/sh_rotation_bands.h"
+#include "tests/math/sh_rotation_input.h"
 
 namespace prt {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-
-std::vector<double> rotated(const Mat3d& r, int shOrder, const std::vector<double>& c) {
-    std::vector<double> out(c.size());
-    rotateSh(r, shOrder, std::span<const double>(c), std::span<double>(out));
-    return out;
-}
-
-double largestDifference(const std::vector<double>& a, const std::vector<double>& b) {
-    double worst = 0;
-    for (size_t i = 0; i < a.size(); ++i) worst = std::max(worst, std::abs(a[i] - b[i]));
-    return worst;
-}
-
-Mat3d about(const Vec3d& axis, double angle) { return Eigen::AngleAxisd(angle, axis).toRotationMatrix(); }
-
-/// Rotations at and near the poles of the Euler angles, and plain ones.
-std::vector<Mat3d> awkwardRotations() {
-    std::vector<Mat3d> result = {Mat3d::Identity()};
-    const Vec3d axes[] = {Vec3d::UnitX(), Vec3d::UnitY(), Vec3d::UnitZ(), Vec3d(1, 1, 0).normalized()};
-    for (const Vec3d& axis : axes)
-        for (const double angle : {kPi / 2, -kPi / 2, kPi, 1e-3, 1e-8, 1e-15, kPi - 1e-8, kPi - 1e-15, 2.0})
-            for (const double twist : {0.0, 0.7, kPi})
-                result.push_back(about(Vec3d::UnitZ(), twist) * about(axis, angle));
-    test::RandomInput random(51);
-    for (int k = 0; k < 10; ++k) result.push_back(random.rotation());
-    return result;
-}
+using test::about;
+using test::awkwardRotations;
+using test::kPi;
+using test::largestDifference;
+using test::rotated;
 
 TEST(ShRotation, MovesADeltaToTheTurnedDirection) {
     // the expansion Y(ω0) of a delta at ω0 becomes Y(R ω0)
@@ -59,7 +35,7 @@ TEST(ShRotation, FirstBandTurnsAsAVector) {
         const Mat3d r = random.rotation();
         const Vec3d v = random.direction(), w = r * v;
         const std::vector<double> out = rotated(r, 2, {0.25, -c * v.y(), c * v.z(), -c * v.x()});
-        EXPECT_LT(largestDifference(out, {0.25, -c * w.y(), c * w.z(), -c * w.x()}), 1e-14);
+        EXPECT_LT(largestDifference(out, std::vector{0.25, -c * w.y(), c * w.z(), -c * w.x()}), 1e-14);
     }
 }
 
@@ -101,7 +77,75 @@ TEST(ShRotation, WorksInPlaceAndInFloat) {
     rotateSh(r, 10, std::span<const float>(inPlace), std::span<float>(inPlace));
     EXPECT_EQ(apart, inPlace);
     const std::vector<double> exact = rotated(r, 10, std::vector<double>(c.begin(), c.end()));
-    for (size_t i = 0; i < 100; ++i) EXPECT_NEAR(double(apart[i]), exact[i], 3e-7);
+    // three turns and two exchanges in float, on bands of length up to √(19/3)
+    for (size_t i = 0; i < 100; ++i) EXPECT_NEAR(double(apart[i]), exact[i], 6e-7);
+}
+
+TEST(ShRotation, FloatFollowsDoubleForAllOrdersAndAngles) {
+    test::RandomInput random(58);
+    for (const int n : {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 24})
+        for (const Mat3d& r : awkwardRotations()) {
+            const std::vector<float> c = random.coefficients<float>(shCount(n));
+            std::vector<float> out(c.size());
+            rotateSh(r, n, std::span<const float>(c), std::span<float>(out));
+            const std::vector<double> exact = rotated(r, n, std::vector<double>(c.begin(), c.end()));
+            for (int l = 0; l < n; ++l) {
+                const size_t first = size_t(l * l), size = size_t(2 * l + 1);
+                double length = 0, worst = 0;
+                for (size_t i = first; i < first + size; ++i) {
+                    length += exact[i] * exact[i];
+                    worst = std::max(worst, std::abs(double(out[i]) - exact[i]));
+                }
+                EXPECT_LE(worst, 1e-6 * std::sqrt(length)) << n << ' ' << l;
+            }
+        }
+}
+
+TEST(ShRotation, ExchangeOfYAndZIsWhatProjectionSays) {
+    for (int l = 1; l < detail::kUnrolledBands; ++l) {
+        const int size = 2 * l + 1;
+        std::vector<double> expected(size_t(size * size), 0.0), y(size_t(shCount(l + 1))), swapped(y.size());
+        for (const SphereNode& node : sphereQuadrature(2 * l)) {
+            const Vec3d& d = node.direction;
+            evalSh(l + 1, d, std::span<double>(y));
+            evalSh(l + 1, Vec3d(d.x(), d.z(), d.y()), std::span<double>(swapped));
+            for (int i = 0; i < size * size; ++i)
+                expected[size_t(i)] +=
+                    node.weightSr * y[size_t(l * l + i / size)] * swapped[size_t(l * l + i % size)];
+        }
+        for (int i = 0; i < size * size; ++i)
+            EXPECT_NEAR(detail::kSwapTables[size_t(l)][size_t(i / size)][size_t(i % size)],
+                        expected[size_t(i)], 1e-13);
+    }
+}
+
+TEST(ZyzAngles, RebuildTheMatrixEvenAtThePoles) {
+    for (const Mat3d& r : awkwardRotations()) {
+        const ZyzAngles a = zyzFromRotation(r);
+        EXPECT_LT((rotationFromZyz(a) - r).cwiseAbs().maxCoeff(), 2e-15) << r;
+        EXPECT_LE(0, a.betaRad);
+        EXPECT_LE(a.betaRad, kPi);
+        EXPECT_LE(std::abs(a.alphaRad), kPi);
+        EXPECT_LE(std::abs(a.gammaRad), kPi);
+    }
+    for (const double beta : {0.0, kPi}) {
+        const ZyzAngles pole = zyzFromRotation(rotationFromZyz({0, beta, 0.75}));
+        EXPECT_NEAR(pole.alphaRad, 0, 1e-15);
+        EXPECT_NEAR(pole.betaRad, beta, 2e-16);
+        EXPECT_NEAR(pole.gammaRad, 0.75, 1e-15);
+    }
+}
+
+TEST(ZyzAngles, AreFoundAgain) {
+    test::RandomInput random(59);
+    for (int k = 0; k < 200; ++k) {
+        const ZyzAngles a{random.uniform(-kPi, kPi), random.uniform(0.01, kPi - 0.01),
+                          random.uniform(-kPi, kPi)};
+        const ZyzAngles found = zyzFromRotation(rotationFromZyz(a));
+        EXPECT_NEAR(found.alphaRad, a.alphaRad, 1e-13);
+        EXPECT_NEAR(found.betaRad, a.betaRad, 1e-13);
+        EXPECT_NEAR(found.gammaRad, a.gammaRad, 1e-13);
+    }
 }
 
 TEST(ShRotation, ToleratesMatricesOfFloatPrecision) {

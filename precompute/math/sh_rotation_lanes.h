@@ -1,0 +1,131 @@
+// Rotations of sixteen vectors at once, and the way through a structure of arrays of any length. Internal.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <span>
+
+#include "precompute/base/check.h"
+#include "precompute/math/sh_lanes.h"
+#include "precompute/math/sh_rotation_angles.h"
+#include "precompute/math/sh_rotation_bands.h"
+
+namespace prt::detail {
+
+/// Sixteen columns of a matrix whose row i begins at data + i·stride.
+struct ConstLaneRows {
+    const float* data;
+    size_t stride;
+    [[gnu::always_inline]] const LanesInArray& operator[](size_t i) const {
+        return *reinterpret_cast<const LanesInArray*>(data + i * stride);
+    }
+};
+struct LaneRows {
+    float* data;
+    size_t stride;
+    [[gnu::always_inline]] LanesInArray& operator[](size_t i) const {
+        return *reinterpret_cast<LanesInArray*>(data + i * stride);
+    }
+};
+
+typedef int32_t LaneBits __attribute__((vector_size(sizeof(int32_t) * kLanes)));
+
+template <>
+struct AngleTraits<Lanes> {
+    /// Below it sin²β counts as 0: the angles then differ by 1e-8.
+    static constexpr float kTinySquare = 1e-16f;
+    using Condition = LaneBits;
+    /// 1/√x of 0 and of normal numbers: an estimate from the exponent, good to 4 %, and three steps of
+    /// Newton, to 2e-7. 0 gives something finite.
+    [[gnu::always_inline]] static void inverseSqrt(const Lanes& x, Lanes& y) {
+        y = reinterpret_cast<Lanes>(0x5f375a86 - (reinterpret_cast<LaneBits>(x) >> 1));
+        const Lanes half = 0.5f * x;
+        for (int step = 0; step < 3; ++step) y *= 1.5f - half * y * y;
+    }
+};
+
+/// Multiples of the angles to shOrder − 1.
+[[gnu::always_inline]] inline void fillLaneMultiples(const ZyzTurns<Lanes>& t, int shOrder,
+                                                     ZyzMultiples<Lanes>& angles) {
+    const Lanes c[3] = {t.cosAlpha, t.cosBeta, t.cosGamma}, s[3] = {t.sinAlpha, t.sinBeta, t.sinGamma};
+    for (int a = 0; a < 3; ++a) {
+        Lanes cosine = c[a], sine = s[a];
+        for (int m = 1; m < shOrder; ++m) {
+            angles.cosine[m][a] = cosine;
+            angles.sine[m][a] = sine;
+            const Lanes next = c[a] * cosine - s[a] * sine;
+            sine = s[a] * cosine + c[a] * sine;
+            cosine = next;
+        }
+    }
+}
+
+/// Reads sixteen matrices and takes note of those that are no rotations.
+[[gnu::always_inline]] inline void loadRotations(const ConstLaneRows& rotations, Lanes* r,
+                                                 LaneBits& allRotations) {
+    for (size_t i = 0; i < 9; ++i) r[i] = rotations[i];
+    Lanes deviation;
+    rotationDeviation(r, deviation);
+    allRotations &= deviation < Lanes{} + float(kMaxRotationDeviation);
+}
+
+inline void checkAllRotations(const LaneBits& allRotations) {
+    for (size_t k = 0; k < kLanes; ++k) {
+        const bool matricesAreRotations = allRotations[k] != 0;
+        PRT_CHECK(matricesAreRotations);
+    }
+}
+
+/// Every lane its band, in place or apart: unrolled bands, then the others by tables.
+template <typename A>
+[[gnu::always_inline]] inline void rotateLanes(int shOrder, const ZyzMultiples<A>& angles,
+                                               const ConstLaneRows& in, const LaneRows& out) {
+    rotateUnrolledBands<float, Lanes>(
+        shOrder, angles, [&](size_t i) __attribute__((always_inline))->const LanesInArray& { return in[i]; },
+        [&](size_t i, const Lanes& value) __attribute__((always_inline)) { out[i] = value; },
+        std::make_index_sequence<kUnrolledBands>());
+    for (int l = kUnrolledBands; l < shOrder; ++l) {
+        Lanes v[2 * kMaxShOrder - 1];
+        for (int i = 0; i < 2 * l + 1; ++i) v[i] = in[size_t(l * l + i)];
+        rotateTableBand<float>(l, angles, v);
+        for (int i = 0; i < 2 * l + 1; ++i) out[size_t(l * l + i)] = v[i];
+    }
+}
+
+/// What a structure of arrays has to hold: `rows` rows of `count` values, `stride` apart.
+inline void checkSoa(size_t rows, size_t count, size_t stride, size_t size) {
+    PRT_CHECK_LE(count, stride);
+    PRT_CHECK_LE((rows - 1) * stride + count, size);
+}
+
+/// Calls kernel(rotations, in, out) for every sixteen vectors; the rest is padded with copies of the last
+/// one.
+/// @param rotations  nine rows, or empty
+template <typename Kernel>
+void forEachLanes(std::span<const float> rotations, int shOrder, size_t count, size_t stride,
+                  std::span<const float> in, std::span<float> out, const Kernel& kernel) {
+    PRT_CHECK_LE(1, shOrder);
+    PRT_CHECK_LE(shOrder, kMaxShOrder);
+    if (count == 0) return;
+    const size_t rows = size_t(shCount(shOrder)), turnRows = rotations.empty() ? 0 : 9;
+    checkSoa(rows, count, stride, in.size());
+    checkSoa(rows, count, stride, out.size());
+    if (turnRows > 0) checkSoa(turnRows, count, stride, rotations.size());
+    size_t k = 0;
+    for (; k + kLanes <= count; k += kLanes)
+        kernel(ConstLaneRows{rotations.data() + (turnRows > 0 ? k : 0), stride},
+               ConstLaneRows{in.data() + k, stride}, LaneRows{out.data() + k, stride});
+    if (k == count) return;
+    float turnBlock[9 * kLanes], block[shCount(kMaxShOrder) * int(kLanes)];
+    const size_t rest = count - k;
+    const auto gather = [&](std::span<const float> from, size_t rowCount, float* to) {
+        for (size_t i = 0; i < rowCount * kLanes; ++i)
+            to[i] = from[i / kLanes * stride + k + std::min(i % kLanes, rest - 1)];
+    };
+    gather(rotations, turnRows, turnBlock);
+    gather(in, rows, block);
+    kernel(ConstLaneRows{turnBlock, kLanes}, ConstLaneRows{block, kLanes}, LaneRows{block, kLanes});
+    for (size_t i = 0; i < rows; ++i) std::copy_n(block + i * kLanes, rest, &out[i * stride + k]);
+}
+
+}  // namespace prt::detail
