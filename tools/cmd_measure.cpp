@@ -21,6 +21,7 @@ struct MeasureCommand {
 const std::vector<MeasureCommand> kMeasureCommands = {
     {"basis", "Habel Fig. 3, Gautron Figs. 4, 5 and 10: bases against signals and coefficients",
      runMeasureBasis},
+    {"rotation", "Křivánek Fig. 3 and Table 1: errors and time of every rotation", runMeasureRotation},
 };
 
 std::string usage() {
