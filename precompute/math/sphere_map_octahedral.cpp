@@ -1,5 +1,5 @@
 // Octahedra unfolded into a square: the central projection of [PraunHoppe2003], and the map of equal areas of
-// [Clarberg2008]. Lookups over the border as engines store it, e.g. [Majercik2019, Fig. 5]. Solid angles of
+// [Clarberg2008]. Lookups over the border as engines store it, e.g. [Majercik2019]. Solid angles of
 // triangles: [VanOosteromStrackee1983].
 #include <array>
 #include <numbers>
@@ -73,7 +73,7 @@ struct Central {
     }
 };
 
-/// [Clarberg2008, Sec. 3]: rings around the pole become lines u + v = r, with r² = 1 − z.
+/// [Clarberg2008]: rings around the pole become lines u + v = r, with r² = 1 − z.
 struct EqualArea {
     static Plane fromOctant(const Vec3d& unit) {
         // 1 − z without cancellation

@@ -138,10 +138,13 @@ std::vector<double> sumSquares(const std::vector<Candidate>& candidates, int shO
 
 std::vector<int> parameterizationSizes(const std::string& layout, int maxSamples) {
     const double samplesPerSquare = makeSphereMap(layout, 2)->texelCount() / 4.0;
+    // Octahedral maps at even sizes only, as textures mostly are: odd ones err less, and a curve through both
+    // would be crooked.
+    const int step = layout.ends_with("octahedral") ? 2 : 1;
     std::vector<int> sizes;
     for (double edge = 8 * std::pow(2, -1.5);; edge *= std::sqrt(2.0)) {
         const double target = 6 * std::round(edge) * std::round(edge);
-        const int size = std::max(2, int(std::lround(std::sqrt(target / samplesPerSquare))));
+        const int size = std::max(2, step * int(std::lround(std::sqrt(target / samplesPerSquare) / step)));
         if (samplesPerSquare * size * size > maxSamples || size > kMaxSphereMapSize) return sizes;
         if (sizes.empty() || sizes.back() != size) sizes.push_back(size);
     }

@@ -27,7 +27,8 @@ struct ParameterizationRow {
 };
 
 /// The sizes at which a layout is measured, rising: those nearest in samples to cubes of 3, 4, 6, 8, 11, 16,
-/// … texels along an edge (54, 96, 216, 384, 726, 1536, …), so that layouts can be compared.
+/// … texels along an edge (54, 96, 216, 384, 726, 1536, …), so that layouts can be compared; of octahedral
+/// maps the even ones.
 /// @param maxSamples  no table is larger; none may fit
 /// @throws InputError  unknown layout
 std::vector<int> parameterizationSizes(const std::string& layout, int maxSamples);
