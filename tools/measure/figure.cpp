@@ -40,7 +40,8 @@ std::string axes(const Panel& panel) {
     std::string out;
     out += panel.logX ? "set logscale x\n" : "unset logscale x\n";
     out += panel.logY ? "set logscale y\nset format y \"%.0e\"\n" : "unset logscale y\nset format y \"%g\"\n";
-    out += fmt::format("set xlabel {}\nset ylabel {}\n", quoted(panel.xLabel), quoted(panel.yLabel));
+    out += fmt::format("set xlabel {} offset 0,0.5\nset ylabel {}\nset rmargin 4\n", quoted(panel.xLabel),
+                       quoted(panel.yLabel));
     return out +
            "set xtics autofreq norotate nomirror\nset ytics nomirror\nset autoscale\nset grid lc rgb "
            "\"#dddddd\"\nset border 3\n";
