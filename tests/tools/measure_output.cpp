@@ -41,6 +41,14 @@ TEST(MeasureTable, CsvQuotesWhatNeedsItAndKeepsEveryDigit) {
     EXPECT_EQ(std::get<double>(table.cell(1, "value")), 1e-300);
 }
 
+TEST(MeasureTable, ValuesThereAreNoneOfAreEmpty) {
+    Table table({"a", "b"});
+    table.add({std::nan(""), uint64_t{1}});
+    EXPECT_EQ(table.csv(), "a,b\r\n,1\r\n");
+    EXPECT_EQ(table.text(), "a  b\n-  1\n");
+    EXPECT_NE(table.reports()[0].text().find("\"a\": null"), std::string::npos);
+}
+
 TEST(MeasureTable, TextAlignsColumns) {
     Table table({"layout", "mse"});
     table.add({std::string("cube"), 0.5});

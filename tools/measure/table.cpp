@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "precompute/base/check.h"
 
@@ -10,7 +11,8 @@ namespace prt::tools {
 namespace {
 
 std::string csvCell(const Cell& cell) {
-    if (const auto* value = std::get_if<double>(&cell)) return fmt::format("{}", *value);
+    if (const auto* value = std::get_if<double>(&cell))
+        return std::isnan(*value) ? "" : fmt::format("{}", *value);
     if (const auto* value = std::get_if<uint64_t>(&cell)) return fmt::format("{}", *value);
     const std::string& text = std::get<std::string>(cell);
     if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
@@ -23,7 +25,8 @@ std::string csvCell(const Cell& cell) {
 }
 
 std::string textCell(const Cell& cell) {
-    if (const auto* value = std::get_if<double>(&cell)) return fmt::format("{:.4g}", *value);
+    if (const auto* value = std::get_if<double>(&cell))
+        return std::isnan(*value) ? "-" : fmt::format("{:.4g}", *value);
     if (const auto* value = std::get_if<uint64_t>(&cell)) return fmt::format("{}", *value);
     return std::get<std::string>(cell);
 }

@@ -17,7 +17,7 @@ class Table {
     /// @param columns  names as in JSON: snake_case, unit as suffix
     explicit Table(std::vector<std::string> columns);
 
-    /// @param cells  one per column
+    /// @param cells  one per column; a NaN is a value there is none of: empty in CSV, null in JSON
     void add(std::vector<Cell> cells);
     size_t rowCount() const { return rows_.size(); }
     const std::vector<std::string>& columns() const { return columns_; }
