@@ -95,7 +95,7 @@ void orthonormalise(SampledBasis& basis, std::span<const double> weights) {
 }
 
 /// One family whose functions of order n are the first of those of any larger order.
-struct Series {
+struct LobeFamily {
     std::string basis;
     int maxOrder;
 };
@@ -110,21 +110,21 @@ class LobeProjection {
             for (const DomainNode& node : nodes_) values_.push_back(lobe.function(node.direction));
         int triangular = 1;
         while ((triangular + 1) * (triangular + 2) / 2 <= maxOrder * maxOrder) ++triangular;
-        series_ = {{"hsh", maxOrder},       {"sh", maxOrder},        {"esh", triangular},
-                   {"zernike", triangular}, {"makhotkin", maxOrder}, {"lsosh", maxOrder}};
+        families_ = {{"hsh", maxOrder},       {"sh", maxOrder},        {"esh", triangular},
+                     {"zernike", triangular}, {"makhotkin", maxOrder}, {"lsosh", maxOrder}};
     }
 
     std::vector<LobeAccuracy> run() const {
         std::vector<LobeAccuracy> rows;
-        for (const Series& series : series_) measure(series, rows);
+        for (const LobeFamily& family : families_) measure(family, rows);
         return rows;
     }
 
   private:
-    void measure(const Series& series, std::vector<LobeAccuracy>& rows) const {
-        const auto basis = makeBasis(series.basis, series.maxOrder);
+    void measure(const LobeFamily& family, std::vector<LobeAccuracy>& rows) const {
+        const auto basis = makeBasis(family.basis, family.maxOrder);
         SampledBasis sampled(*basis, nodes_);
-        const bool leastSquares = series.basis == "lsosh";
+        const bool leastSquares = family.basis == "lsosh";
         if (leastSquares) orthonormalise(sampled, weights_);
         std::vector<double> projecting = weights_;
         bool unitWeight = true;
@@ -135,13 +135,13 @@ class LobeProjection {
         std::vector<std::vector<LobeAccuracy>> found(lobes_.size());
         parallelFor(lobes_.size(), 1, [&](size_t begin, size_t end) {
             for (size_t lobe = begin; lobe < end; ++lobe)
-                found[lobe] = ofLobe(lobe, series, sampled, projecting, unitWeight && !leastSquares);
+                found[lobe] = ofLobe(lobe, family, sampled, projecting, unitWeight && !leastSquares);
         });
         for (const auto& of : found) rows.insert(rows.end(), of.begin(), of.end());
     }
 
     /// @param byCoefficients  Eq. 15 by the sum of squares
-    std::vector<LobeAccuracy> ofLobe(size_t lobe, const Series& series, const SampledBasis& sampled,
+    std::vector<LobeAccuracy> ofLobe(size_t lobe, const LobeFamily& family, const SampledBasis& sampled,
                                      std::span<const double> projecting, bool byCoefficients) const {
         const std::span<const double> f(values_.data() + lobe * nodes_.size(), nodes_.size());
         const double energy = dot(weights_, f, f);
@@ -149,8 +149,8 @@ class LobeProjection {
         std::vector<LobeAccuracy> rows;
         double captured = 0;
         size_t used = 0;
-        for (int order = 1; order <= series.maxOrder; ++order) {
-            const bool triangular = series.basis == "esh" || series.basis == "zernike";
+        for (int order = 1; order <= family.maxOrder; ++order) {
+            const bool triangular = family.basis == "esh" || family.basis == "zernike";
             const int count = triangular ? order * (order + 1) / 2 : order * order;
             for (; used < size_t(count); ++used) {
                 const double c = dot(projecting, f, sampled.function(used));
@@ -158,7 +158,7 @@ class LobeProjection {
                 addScaled(rest, -c, sampled.function(used));
             }
             const double hemisphere = 1 - dot(weights_, rest, rest) / energy;
-            rows.push_back({lobe, series.basis, order, count, series.basis == "esh" ? order * order : count,
+            rows.push_back({lobe, family.basis, order, count, family.basis == "esh" ? order * order : count,
                             byCoefficients ? captured / energy : hemisphere, hemisphere});
         }
         return rows;
@@ -168,7 +168,7 @@ class LobeProjection {
     std::span<const Lobe> lobes_;
     std::vector<double> weights_;  ///< [nodes]
     std::vector<double> values_;   ///< [lobes×nodes]
-    std::vector<Series> series_;
+    std::vector<LobeFamily> families_;
 };
 
 /// Coefficients to be dotted with those of an environment.

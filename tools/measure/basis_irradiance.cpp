@@ -61,7 +61,8 @@ Matrix evaluate(const Basis& basis, std::span<const DomainNode> nodes) {
     return values;
 }
 
-/// Rows c·b and cᵀGc of a block: Σ over the rows of −2 c·b + cᵀGc.
+/// Σ over the signals of a block of −2 c·b + cᵀGc.
+/// @param coefficients, integrals  c and b, a row per signal
 double expansionError(const Matrix& coefficients, const Matrix& integrals, const Matrix& gram) {
     return (coefficients * gram - 2 * integrals).cwiseProduct(coefficients).sum();
 }
@@ -85,58 +86,80 @@ void IrradianceErrors::add(const IrradianceErrors& other) {
     }
 }
 
+namespace {
+
+/// Makes the common matrix row by row, and what each candidate needs beside.
+class MatrixBuilder {
+  public:
+    MatrixBuilder(std::span<const DomainNode> nodes, IrradianceComparison::Matrices& out)
+        : nodes_(nodes), out_(out), sh9_(evaluate(*makeBasis("sh", 3), nodes)) {
+        out_.quadrature.resize(sh9_.cols());
+        for (Eigen::Index k = 0; k < sh9_.cols(); ++k) out_.quadrature[k] = nodes[size_t(k)].weightSr;
+    }
+
+    void add(const IrradianceCandidate& candidate) {
+        const auto basis = makeBasis(candidate.basis, candidate.order);
+        PRT_CHECK_EQ(basis->count(), candidate.coefficients);
+        const Matrix values = evaluate(*basis, nodes_);
+        const Matrix plain = values * out_.quadrature.asDiagonal();
+        CandidateMatrices m;
+        m.count = basis->count();
+        m.overSphere = basis->domain() == BasisDomain::Sphere;
+        m.gram = plain * values.transpose();
+        m.firstPlain = m.firstWeighted = addRows(plain);
+        if (basis->weight(nodes_.front().direction) != 1) {
+            Matrix weighted = plain;
+            for (Eigen::Index k = 0; k < weighted.cols(); ++k)
+                weighted.col(k) *= basis->weight(nodes_[size_t(k)].direction);
+            m.firstWeighted = addRows(weighted);
+        }
+        if (!basis->orthonormal()) m.solve = m.gram.llt().solve(Matrix::Identity(m.count, m.count));
+        m.fromSh9 = fromSh9(candidate, m);
+        out_.candidates.push_back(std::move(m));
+    }
+
+    void finish() {
+        out_.functions.resize(rowCount_, sh9_.cols());
+        Eigen::Index at = 0;
+        for (const Matrix& added : rows_) {
+            out_.functions.middleRows(at, added.rows()) = added;
+            at += added.rows();
+        }
+    }
+
+  private:
+    /// @return where they begin
+    Eigen::Index addRows(const Matrix& added) {
+        rows_.push_back(added);
+        rowCount_ += added.rows();
+        return rowCount_ - added.rows();
+    }
+
+    Matrix fromSh9(const IrradianceCandidate& candidate, const CandidateMatrices& m) const {
+        if (m.overSphere) return Matrix::Identity(m.count, 9);
+        if (candidate.basis == "h") return MatrixView(shToHMatrix(3).data(), 6, 9).topRows(m.count);
+        if (candidate.basis == "hsh") return MatrixView(shToHshMatrix(candidate.order, 3).data(), m.count, 9);
+        const Matrix integrals = rows_.back() * sh9_.transpose();  // of the weighted functions
+        return m.solve.size() ? Matrix(m.solve * integrals) : integrals;
+    }
+
+    std::span<const DomainNode> nodes_;
+    IrradianceComparison::Matrices& out_;
+    Matrix sh9_;
+    std::vector<Matrix> rows_;
+    Eigen::Index rowCount_ = 0;
+};
+
+}  // namespace
+
 IrradianceComparison::IrradianceComparison(int degree)
     : nodes_(domainQuadrature(BasisDomain::UpperHemisphere, degree)),
       truth_(nodes_),
       candidates_(allCandidates()),
       matrices_(std::make_unique<Matrices>()) {
-    const auto nodeCount = Eigen::Index(nodes_.size());
-    Eigen::VectorXd& quadrature = matrices_->quadrature;
-    quadrature.resize(nodeCount);
-    for (Eigen::Index k = 0; k < nodeCount; ++k) quadrature[k] = nodes_[size_t(k)].weightSr;
-    const Matrix sh9 = evaluate(*makeBasis("sh", 3), nodes_);
-
-    std::vector<Matrix> rows;
-    Eigen::Index rowCount = 0;
-    for (const IrradianceCandidate& candidate : candidates_) {
-        const auto basis = makeBasis(candidate.basis, candidate.order);
-        PRT_CHECK_EQ(basis->count(), candidate.coefficients);
-        const Matrix values = evaluate(*basis, nodes_);
-        CandidateMatrices m;
-        m.count = basis->count();
-        m.overSphere = basis->domain() == BasisDomain::Sphere;
-        const auto addRows = [&](const Matrix& added) {
-            rows.push_back(added);
-            rowCount += added.rows();
-            return rowCount - added.rows();
-        };
-        const Matrix plain = values * quadrature.asDiagonal();
-        m.gram = plain * values.transpose();
-        m.firstPlain = m.firstWeighted = addRows(plain);
-        Matrix weighted = plain;
-        if (basis->weight(nodes_.front().direction) != 1) {
-            for (Eigen::Index k = 0; k < nodeCount; ++k)
-                weighted.col(k) *= basis->weight(nodes_[size_t(k)].direction);
-            m.firstWeighted = addRows(weighted);
-        }
-        if (!basis->orthonormal()) m.solve = m.gram.llt().solve(Matrix::Identity(m.count, m.count));
-        if (m.overSphere)
-            m.fromSh9 = Matrix::Identity(m.count, 9);
-        else if (candidate.basis == "h")
-            m.fromSh9 = MatrixView(shToHMatrix(3).data(), 6, 9).topRows(m.count);
-        else if (candidate.basis == "hsh")
-            m.fromSh9 = MatrixView(shToHshMatrix(candidate.order, 3).data(), m.count, 9);
-        else
-            m.fromSh9 = m.solve.size() ? Matrix(m.solve * (weighted * sh9.transpose()))
-                                       : Matrix(weighted * sh9.transpose());
-        matrices_->candidates.push_back(std::move(m));
-    }
-    matrices_->functions.resize(rowCount, nodeCount);
-    Eigen::Index at = 0;
-    for (const Matrix& added : rows) {
-        matrices_->functions.middleRows(at, added.rows()) = added;
-        at += added.rows();
-    }
+    MatrixBuilder builder(nodes_, *matrices_);
+    for (const IrradianceCandidate& candidate : candidates_) builder.add(candidate);
+    builder.finish();
 }
 
 IrradianceComparison::~IrradianceComparison() = default;

@@ -53,8 +53,9 @@ class IrradianceComparison {
     /// @param sh9         [signals×9] bands 0…2 of the same over the sphere of normals
     IrradianceErrors errors(std::span<const double> irradiance, std::span<const double> sh9) const;
 
+    struct Matrices;  ///< of basis_irradiance.cpp
+
   private:
-    struct Matrices;
     std::vector<DomainNode> nodes_;
     IrradianceTruth truth_;
     std::vector<IrradianceCandidate> candidates_;
