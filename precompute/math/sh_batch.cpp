@@ -14,13 +14,13 @@ namespace prt {
 namespace {
 
 using detail::kLanes;
-using detail::LaneColumns;
 using detail::Lanes;
-using detail::LanesInArray;
+using detail::lanesAt;
+using detail::quadAt;
 
 /// Any number of bands.
 [[gnu::always_inline]] inline void evalByTable(int shOrder, const Lanes& x, const Lanes& y, const Lanes& z,
-                                               const LaneColumns& out) {
+                                               float* out, size_t stride) {
     const LegendreRecurrence<float>& t = kLegendreRecurrence<float>;
     Lanes q[legendreCount(kMaxShOrder)];
     Lanes cosPart[kMaxShOrder], sinPart[kMaxShOrder];
@@ -42,77 +42,76 @@ using detail::LanesInArray;
                 q[i] = t.rise[i] * z * one - t.fall[i] * two;
             }
             // For m = 0 the first store is overwritten by the second.
-            out[size_t(shIndex(l, -m))] = q[i] * sinPart[m];
-            out[size_t(shIndex(l, m))] = q[i] * cosPart[m];
+            lanesAt(out + size_t(shIndex(l, -m)) * stride) = q[i] * sinPart[m];
+            lanesAt(out + size_t(shIndex(l, m)) * stride) = q[i] * cosPart[m];
         }
 }
 
 template <int N>
 [[gnu::always_inline]] inline void evalByStraightLine(const Lanes& x, const Lanes& y, const Lanes& z,
-                                                      const LaneColumns& out) {
+                                                      float* out, size_t stride) {
     detail::evalShStraightLine<N, Lanes>(
-        x, y, z, [&](int i, const Lanes& value) __attribute__((always_inline)) { out[size_t(i)] = value; });
+        x, y, z, [&](int i, const Lanes& value) __attribute__((always_inline)) {
+            lanesAt(out + size_t(i) * stride) = value;
+        });
 }
 
 /// Sixteen directions.
 /// @param x, y, z  [16]   @param out  [n²] rows of 16, stride apart
 PRT_TARGET_CLONES void evalBlock(int shOrder, const float* xIn, const float* yIn, const float* zIn,
-                                 float* outIn, size_t stride) {
-    const Lanes x = *reinterpret_cast<const LanesInArray*>(xIn);
-    const Lanes y = *reinterpret_cast<const LanesInArray*>(yIn);
-    const Lanes z = *reinterpret_cast<const LanesInArray*>(zIn);
-    const LaneColumns out{outIn, stride};
+                                 float* out, size_t stride) {
+    const Lanes x = lanesAt(xIn).value;
+    const Lanes y = lanesAt(yIn).value;
+    const Lanes z = lanesAt(zIn).value;
     static_assert(detail::kMaxStraightLineOrder == 10);
     switch (shOrder) {
         case 1:
-            return evalByStraightLine<1>(x, y, z, out);
+            return evalByStraightLine<1>(x, y, z, out, stride);
         case 2:
-            return evalByStraightLine<2>(x, y, z, out);
+            return evalByStraightLine<2>(x, y, z, out, stride);
         case 3:
-            return evalByStraightLine<3>(x, y, z, out);
+            return evalByStraightLine<3>(x, y, z, out, stride);
         case 4:
-            return evalByStraightLine<4>(x, y, z, out);
+            return evalByStraightLine<4>(x, y, z, out, stride);
         case 5:
-            return evalByStraightLine<5>(x, y, z, out);
+            return evalByStraightLine<5>(x, y, z, out, stride);
         case 6:
-            return evalByStraightLine<6>(x, y, z, out);
+            return evalByStraightLine<6>(x, y, z, out, stride);
         case 7:
-            return evalByStraightLine<7>(x, y, z, out);
+            return evalByStraightLine<7>(x, y, z, out, stride);
         case 8:
-            return evalByStraightLine<8>(x, y, z, out);
+            return evalByStraightLine<8>(x, y, z, out, stride);
         case 9:
-            return evalByStraightLine<9>(x, y, z, out);
+            return evalByStraightLine<9>(x, y, z, out, stride);
         case 10:
-            return evalByStraightLine<10>(x, y, z, out);
+            return evalByStraightLine<10>(x, y, z, out, stride);
         default:
-            return evalByTable(shOrder, x, y, z, out);
+            return evalByTable(shOrder, x, y, z, out, stride);
     }
 }
 
-/// rows[k·columns + i] = lanes[i·int(kLanes) + k] for k < rowCount.
+/// rows[k·columns + i] = lanes[i·16 + k] for k < rowCount.
 void transposeBlock(const float* lanes, int columns, int rowCount, float* rows) {
-    using Vec4 [[gnu::vector_size(16), gnu::aligned(4), gnu::may_alias]] = float;
-    const auto load = [](const float* p) { return *reinterpret_cast<const Vec4*>(p); };
+    constexpr int kWidth = int(kLanes);
     for (int k = 0; k < rowCount; k += 4) {
         const bool wholeRows = k + 4 <= rowCount;
         int i = 0;
         for (; wholeRows && i + 4 <= columns; i += 4) {
-            const float* p = lanes + i * int(kLanes) + k;
-            const auto a = load(p), b = load(p + int(kLanes)), c = load(p + 2 * int(kLanes)),
-                       d = load(p + 3 * int(kLanes));
+            const float* p = lanes + i * kWidth + k;
+            const detail::Quad a = quadAt(p).value, b = quadAt(p + kWidth).value,
+                               c = quadAt(p + 2 * kWidth).value, d = quadAt(p + 3 * kWidth).value;
             const auto abLow = __builtin_shufflevector(a, b, 0, 4, 1, 5);
             const auto abHigh = __builtin_shufflevector(a, b, 2, 6, 3, 7);
             const auto cdLow = __builtin_shufflevector(c, d, 0, 4, 1, 5);
             const auto cdHigh = __builtin_shufflevector(c, d, 2, 6, 3, 7);
             float* r = rows + k * columns + i;
-            *reinterpret_cast<Vec4*>(r) = __builtin_shufflevector(abLow, cdLow, 0, 1, 4, 5);
-            *reinterpret_cast<Vec4*>(r + columns) = __builtin_shufflevector(abLow, cdLow, 2, 3, 6, 7);
-            *reinterpret_cast<Vec4*>(r + 2 * columns) = __builtin_shufflevector(abHigh, cdHigh, 0, 1, 4, 5);
-            *reinterpret_cast<Vec4*>(r + 3 * columns) = __builtin_shufflevector(abHigh, cdHigh, 2, 3, 6, 7);
+            quadAt(r) = __builtin_shufflevector(abLow, cdLow, 0, 1, 4, 5);
+            quadAt(r + columns) = __builtin_shufflevector(abLow, cdLow, 2, 3, 6, 7);
+            quadAt(r + 2 * columns) = __builtin_shufflevector(abHigh, cdHigh, 0, 1, 4, 5);
+            quadAt(r + 3 * columns) = __builtin_shufflevector(abHigh, cdHigh, 2, 3, 6, 7);
         }
         for (; i < columns; ++i)
-            for (int r = k; r < std::min(k + 4, rowCount); ++r)
-                rows[r * columns + i] = lanes[i * int(kLanes) + r];
+            for (int r = k; r < std::min(k + 4, rowCount); ++r) rows[r * columns + i] = lanes[i * kWidth + r];
     }
 }
 

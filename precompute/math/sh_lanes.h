@@ -2,30 +2,46 @@
 // two, SSE in four. Internal to prt_math.
 #pragma once
 
-#include <algorithm>
 #include <cstddef>
+
+// Before a loop whose iterations touch no memory of each other, which the compiler cannot know. Clang would
+// warn of every build in which it does not vectorise such a loop, sanitizers among them: it gets no promise.
+#if defined(__clang__)
+#define PRT_INDEPENDENT_LOOP
+#else
+#define PRT_INDEPENDENT_LOOP _Pragma("GCC ivdep")
+#endif
 
 namespace prt::detail {
 
 inline constexpr size_t kLanes = 16;
 typedef float Lanes __attribute__((vector_size(sizeof(float) * kLanes)));
-/// The same anywhere in an array of floats.
+/// Four numbers at once.
+typedef float Quad __attribute__((vector_size(16)));
+
+/// A vector anywhere in an array of floats. A struct, not a typedef with an attribute: clang takes references
+/// to such a typedef for aligned ones.
+template <typename Vector>
+struct [[gnu::packed, gnu::may_alias]] InArray {
+    Vector value;
+    [[gnu::always_inline]] InArray& operator=(const Vector& v) {
+        value = v;
+        return *this;
+    }
+};
+/// The same for code that only uses it in place: no function may return a reference to it.
 typedef float LanesInArray __attribute__((vector_size(sizeof(float) * kLanes), aligned(4), may_alias));
 
-/// Columns k … k + 15 of a matrix whose row i begins at data + i·stride.
-struct ConstLaneColumns {
-    const float* data;
-    size_t stride;
-    [[gnu::always_inline]] const LanesInArray& operator[](size_t i) const {
-        return *reinterpret_cast<const LanesInArray*>(data + i * stride);
-    }
-};
-struct LaneColumns {
-    float* data;
-    size_t stride;
-    [[gnu::always_inline]] LanesInArray& operator[](size_t i) const {
-        return *reinterpret_cast<LanesInArray*>(data + i * stride);
-    }
-};
+/// The vector that begins at p.
+[[gnu::always_inline]] inline InArray<Lanes>& lanesAt(float* p) {
+    return *reinterpret_cast<InArray<Lanes>*>(p);
+}
+[[gnu::always_inline]] inline const InArray<Lanes>& lanesAt(const float* p) {
+    return *reinterpret_cast<const InArray<Lanes>*>(p);
+}
+[[gnu::always_inline]] inline InArray<Quad>& quadAt(float* p) { return *reinterpret_cast<InArray<Quad>*>(p); }
+[[gnu::always_inline]] inline const InArray<Quad>& quadAt(const float* p) {
+    return *reinterpret_cast<const InArray<Quad>*>(p);
+}
 
 }  // namespace prt::detail

@@ -24,7 +24,7 @@ struct LegendreRecurrence {
 };
 
 /// √a at compile time, a > 0, by Newton's iteration.
-consteval double constantSquareRoot(double a) {
+constexpr double constantSquareRoot(double a) {
     double root = a > 1 ? a : 1;
     for (;;) {  // falls until rounding stops it
         const double next = 0.5 * (root + a / root);
@@ -34,7 +34,7 @@ consteval double constantSquareRoot(double a) {
 }
 
 template <typename T>
-consteval LegendreRecurrence<T> makeLegendreRecurrence() {
+constexpr LegendreRecurrence<T> makeLegendreRecurrence() {
     LegendreRecurrence<T> t{};
     double diagonal = constantSquareRoot(1 / (4 * std::numbers::pi));
     for (int m = 0; m < kMaxShOrder; ++m) {

@@ -21,7 +21,7 @@ struct HornerTable {
     float a[legendreCount(kMaxStraightLineOrder)][kMaxHornerDegree / 2 + 1];
 };
 
-consteval HornerTable makeHornerTable() {
+constexpr HornerTable makeHornerTable() {
     HornerTable table{};
     constexpr int kDegrees = kMaxHornerDegree + 1;
     for (int m = 0; m < kMaxStraightLineOrder; ++m) {

@@ -1,5 +1,4 @@
-// Speed of evaluation, by number of bands: one direction, rows of many, structure of arrays of many.
-// Counter ns: nanoseconds per direction.
+// Speed of evaluation and products, by number of bands. Counter ns: nanoseconds per direction or product.
 #include <benchmark/benchmark.h>
 
 #include <cstdint>
@@ -8,6 +7,8 @@
 
 #include "precompute/math/directions.h"
 #include "precompute/math/sh.h"
+#include "precompute/math/sh_product.h"
+#include "tests/math/random_input.h"
 
 namespace prt {
 namespace {
@@ -20,14 +21,14 @@ constexpr size_t kLine = 16;  // floats of a cache line
 class AlignedFloats {
   public:
     explicit AlignedFloats(size_t count) : memory_(count + kLine) {}
-    std::span<float> span() {
+    std::span<float> span() const {
         const size_t skip =
             (kLine - reinterpret_cast<uintptr_t>(memory_.data()) / sizeof(float) % kLine) % kLine;
         return std::span(memory_).subspan(skip, memory_.size() - kLine);
     }
 
   private:
-    std::vector<float> memory_;
+    mutable std::vector<float> memory_;
 };
 
 void countNanoseconds(benchmark::State& state, size_t perIteration) {
@@ -78,6 +79,79 @@ void evalSoa(benchmark::State& state) {
     countNanoseconds(state, kCount);
 }
 BENCHMARK(evalSoa)->DenseRange(3, 10);
+
+/// Two factors and a place for their product.
+struct Factors {
+    explicit Factors(size_t size) : f(size), g(size), out(size) {
+        test::RandomInput random(1);
+        for (AlignedFloats* factor : {&f, &g})
+            for (float& c : factor->span()) c = float(random.uniform(-1, 1));
+    }
+    AlignedFloats f, g, out;
+};
+
+void productTable(benchmark::State& state) {
+    const int n = int(state.range(0));
+    const Factors x{size_t(shCount(n))};
+    for (auto _ : state)
+        benchmark::DoNotOptimize(shProduct(x.f.span(), x.g.span(), n));  // allocates its result
+    countNanoseconds(state, 1);
+}
+BENCHMARK(productTable)->DenseRange(3, 6);
+
+void productSingle(benchmark::State& state) {
+    const int n = int(state.range(0));
+    const Factors x{size_t(shCount(n))};
+    for (auto _ : state) {
+        shProduct(n, x.f.span(), x.g.span(), x.out.span());
+        benchmark::ClobberMemory();
+    }
+    countNanoseconds(state, 1);
+}
+BENCHMARK(productSingle)->DenseRange(3, 6);
+
+void productSoa(benchmark::State& state) {
+    const int n = int(state.range(0));
+    const Factors x{kStride * size_t(shCount(n))};
+    for (auto _ : state) {
+        shProductSoa(n, x.f.span(), x.g.span(), x.out.span(), kCount, kStride);
+        benchmark::ClobberMemory();
+    }
+    countNanoseconds(state, kCount);
+}
+BENCHMARK(productSoa)->DenseRange(3, 6);
+
+void productByMatrix(benchmark::State& state) {
+    const int n = int(state.range(0));
+    const Factors x{size_t(shCount(n))};
+    const std::vector<float> matrix = productMatrix(x.f.span(), n, n);
+    for (auto _ : state) {
+        applyProductMatrix(matrix, x.g.span(), x.out.span());
+        benchmark::ClobberMemory();
+    }
+    countNanoseconds(state, 1);
+}
+BENCHMARK(productByMatrix)->DenseRange(3, 6);
+
+void productByMatrixSoa(benchmark::State& state) {
+    const int n = int(state.range(0));
+    const Factors x{kStride * size_t(shCount(n))};
+    const std::vector<float> matrix = productMatrix(x.f.span().first(size_t(shCount(n))), n, n);
+    for (auto _ : state) {
+        applyProductMatrixSoa(matrix, n, n, x.g.span(), x.out.span(), kCount, kStride);
+        benchmark::ClobberMemory();
+    }
+    countNanoseconds(state, kCount);
+}
+BENCHMARK(productByMatrixSoa)->DenseRange(3, 6);
+
+void productMatrixBuild(benchmark::State& state) {
+    const int n = int(state.range(0));
+    const Factors x{size_t(shCount(n))};
+    for (auto _ : state) benchmark::DoNotOptimize(productMatrix(x.f.span(), n, n));
+    countNanoseconds(state, 1);
+}
+BENCHMARK(productMatrixBuild)->DenseRange(3, 6);
 
 }  // namespace
 }  // namespace prt
