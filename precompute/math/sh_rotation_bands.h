@@ -189,13 +189,14 @@ template <typename Scalar, typename V, typename A>
 template <typename Scalar, int kBand, typename V, typename A, typename In, typename Out, size_t... kRow>
 [[gnu::always_inline]] inline void rotateOneBand(const ZyzMultiples<A>& angles, const In& in, const Out& out,
                                                  std::index_sequence<kRow...>) {
-    V v[2 * kBand + 1] = {in(size_t(kBand * kBand) + kRow)...};
+    V v[2 * kBand + 1];
+    (in(size_t(kBand * kBand) + kRow, v[kRow]), ...);
     rotateUnrolledBand<Scalar, kBand>(angles, v);
     (out(size_t(kBand * kBand) + kRow, v[kRow]), ...);
 }
 
 /// Rotates the bands below min(shOrder, kUnrolledBands).
-/// @param in   in(i) gives the value of coefficient i
+/// @param in   in(i, value) sets the value to coefficient i
 /// @param out  out(i, value) takes it
 template <typename Scalar, typename V, typename A, typename In, typename Out, size_t... kBand>
 [[gnu::always_inline]] inline void rotateUnrolledBands(int shOrder, const ZyzMultiples<A>& angles,

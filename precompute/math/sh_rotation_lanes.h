@@ -12,19 +12,25 @@
 
 namespace prt::detail {
 
+/// Lanes anywhere in an array of floats. A structure, because clang takes a reference to a vector type of
+/// lower alignment, once a function returns it, for one of full alignment.
+struct [[gnu::packed, gnu::may_alias]] UnalignedLanes {
+    Lanes value;
+};
+
 /// Sixteen columns of a matrix whose row i begins at data + i·stride.
 struct ConstLaneRows {
     const float* data;
     size_t stride;
-    [[gnu::always_inline]] const LanesInArray& operator[](size_t i) const {
-        return *reinterpret_cast<const LanesInArray*>(data + i * stride);
+    [[gnu::always_inline]] void operator()(size_t i, Lanes& value) const {
+        value = reinterpret_cast<const UnalignedLanes*>(data + i * stride)->value;
     }
 };
 struct LaneRows {
     float* data;
     size_t stride;
-    [[gnu::always_inline]] LanesInArray& operator[](size_t i) const {
-        return *reinterpret_cast<LanesInArray*>(data + i * stride);
+    [[gnu::always_inline]] void operator()(size_t i, const Lanes& value) const {
+        reinterpret_cast<UnalignedLanes*>(data + i * stride)->value = value;
     }
 };
 
@@ -63,7 +69,7 @@ struct AngleTraits<Lanes> {
 /// Reads sixteen matrices and takes note of those that are no rotations.
 [[gnu::always_inline]] inline void loadRotations(const ConstLaneRows& rotations, Lanes* r,
                                                  LaneBits& allRotations) {
-    for (size_t i = 0; i < 9; ++i) r[i] = rotations[i];
+    for (size_t i = 0; i < 9; ++i) rotations(i, r[i]);
     Lanes deviation;
     rotationDeviation(r, deviation);
     allRotations &= deviation < Lanes{} + float(kMaxRotationDeviation);
@@ -80,15 +86,12 @@ inline void checkAllRotations(const LaneBits& allRotations) {
 template <typename A>
 [[gnu::always_inline]] inline void rotateLanes(int shOrder, const ZyzMultiples<A>& angles,
                                                const ConstLaneRows& in, const LaneRows& out) {
-    rotateUnrolledBands<float, Lanes>(
-        shOrder, angles, [&](size_t i) __attribute__((always_inline))->const LanesInArray& { return in[i]; },
-        [&](size_t i, const Lanes& value) __attribute__((always_inline)) { out[i] = value; },
-        std::make_index_sequence<kUnrolledBands>());
+    rotateUnrolledBands<float, Lanes>(shOrder, angles, in, out, std::make_index_sequence<kUnrolledBands>());
     for (int l = kUnrolledBands; l < shOrder; ++l) {
         Lanes v[2 * kMaxShOrder - 1];
-        for (int i = 0; i < 2 * l + 1; ++i) v[i] = in[size_t(l * l + i)];
+        for (int i = 0; i < 2 * l + 1; ++i) in(size_t(l * l + i), v[i]);
         rotateTableBand<float>(l, angles, v);
-        for (int i = 0; i < 2 * l + 1; ++i) out[size_t(l * l + i)] = v[i];
+        for (int i = 0; i < 2 * l + 1; ++i) out(size_t(l * l + i), v[i]);
     }
 }
 

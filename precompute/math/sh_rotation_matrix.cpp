@@ -25,7 +25,7 @@ constexpr size_t kMaxBandSize = 2 * kMaxShOrder - 1;
 [[gnu::always_inline]] inline void applyBlock(const float* block, int size, const ConstLaneRows& in,
                                               const LaneRows& out) {
     Lanes v[kMaxBandSize], sums[kMaxBandSize + 3];
-    for (int c = 0; c < size; ++c) v[c] = in[size_t(c)];
+    for (int c = 0; c < size; ++c) in(size_t(c), v[c]);
     for (int r = 0; r < size; r += 4) {
         const float* rows[4];
         for (int i = 0; i < 4; ++i) rows[i] = block + std::min(r + i, size - 1) * size;
@@ -41,7 +41,7 @@ constexpr size_t kMaxBandSize = 2 * kMaxShOrder - 1;
         sums[r + 2] = c;
         sums[r + 3] = d;
     }
-    for (int r = 0; r < size; ++r) out[size_t(r)] = sums[r];
+    for (int r = 0; r < size; ++r) out(size_t(r), sums[r]);
 }
 
 PRT_TARGET_CLONES void applyLanes(int shOrder, const float* entries, const ConstLaneRows& in,

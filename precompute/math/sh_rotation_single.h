@@ -47,7 +47,7 @@ template <typename T>
 template <typename T>
 struct CoefficientSource {
     const T* data;
-    [[gnu::always_inline]] T operator()(size_t i) const { return data[i]; }
+    [[gnu::always_inline]] void operator()(size_t i, T& value) const { value = data[i]; }
 };
 template <typename T>
 struct CoefficientTarget {

@@ -62,16 +62,13 @@ PRT_TARGET_CLONES void rotateFloats(const TaylorTurn& turn, ShTaylorOrder order,
 template <int kTwiceOrder>
 [[gnu::always_inline]] inline void rotateLanesBy(const ZyzMultiples<Lanes>& angles, const Lanes& beta,
                                                  int shOrder, const ConstLaneRows& in, const LaneRows& out) {
-    rotateUnrolledTaylorBands<float, kTwiceOrder, Lanes>(
-        shOrder, angles,
-        beta, [&](size_t i) __attribute__((always_inline))->const LanesInArray& { return in[i]; },
-        [&](size_t i, const Lanes& value) __attribute__((always_inline)) { out[i] = value; },
-        std::make_index_sequence<kUnrolledBands>());
+    rotateUnrolledTaylorBands<float, kTwiceOrder, Lanes>(shOrder, angles, beta, in, out,
+                                                         std::make_index_sequence<kUnrolledBands>());
     for (int l = kUnrolledBands; l < shOrder; ++l) {
         Lanes v[2 * kMaxShOrder - 1];
-        for (int i = 0; i < 2 * l + 1; ++i) v[i] = in[size_t(l * l + i)];
+        for (int i = 0; i < 2 * l + 1; ++i) in(size_t(l * l + i), v[i]);
         rotateTableTaylorBand<float, kTwiceOrder>(l, angles, beta, v);
-        for (int i = 0; i < 2 * l + 1; ++i) out[size_t(l * l + i)] = v[i];
+        for (int i = 0; i < 2 * l + 1; ++i) out(size_t(l * l + i), v[i]);
     }
 }
 

@@ -80,7 +80,8 @@ template <typename Scalar, int kBand, int kTwiceOrder, typename V, typename A, t
 [[gnu::always_inline]] inline void rotateOneTaylorBand(const ZyzMultiples<A>& angles, const A& beta,
                                                        const A& halfSquare, const In& in, const Out& out,
                                                        std::index_sequence<kRow...> rows) {
-    V v[2 * kBand + 1] = {in(size_t(kBand * kBand) + kRow)...}, w[2 * kBand + 1];
+    V v[2 * kBand + 1], w[2 * kBand + 1];
+    (in(size_t(kBand * kBand) + kRow, v[kRow]), ...);
     if constexpr (kBand == 0) {
         w[0] = v[0];
     } else {

@@ -158,7 +158,7 @@ Counted operator*(const CountedConstant& a, const Counted& b) {
 int countZxzxz(int n) {
     detail::ZyzMultiples<Counted> angles{};
     Counted::multiplications = 0;
-    const auto in = [](size_t) { return Counted{1}; };
+    const auto in = [](size_t, Counted& value) { value = {1}; };
     const auto out = [](size_t, const Counted&) {};
     detail::rotateUnrolledBands<CountedConstant, Counted>(n, angles, in, out,
                                                           std::make_index_sequence<detail::kUnrolledBands>());
