@@ -35,8 +35,8 @@ constexpr int shOrderFromCount(size_t count) {
 /// @param shOrder    1..kMaxShOrder
 /// @param direction  unit
 /// @param out        [n²]
-/// @source [Sloan2008, A.2]: recurrences in z, with cos/sin(m phi) times sin^m(theta) as polynomials in x and
-/// y
+/// @source [Sloan2008, A.2]: polynomials and recurrences in z, with cos/sin(m phi) times sin^m(theta) as
+/// polynomials in x and y
 void evalSh(int shOrder, const Vec3f& direction, std::span<float> out);
 void evalSh(int shOrder, const Vec3d& direction, std::span<double> out);
 
@@ -47,9 +47,9 @@ void evalShBatch(int shOrder, std::span<const Vec3f> directions, std::span<float
 /// Evaluates many directions as a structure of arrays, with the precision of evalSh in float; several times
 /// faster per direction. Allocates nothing.
 /// @param x, y, z  [N] coordinates of unit directions
-/// @param out      function i in direction k at out[i·stride + k]; at least (n² − 1)·stride + N floats, of
-/// which
-///                 those between the rows are left alone; apart from x, y and z
+/// @param out      function i in direction k at out[i·stride + k]; at least (n² − 1)·stride + N floats, apart
+///                 from x, y and z. What lies between the rows is left alone. Fastest where rows begin at
+///                 multiples of 64 bytes that share no cache sets.
 /// @param stride   >= N
 /// @source as evalSh
 void evalShSoa(int shOrder, std::span<const float> x, std::span<const float> y, std::span<const float> z,

@@ -48,18 +48,21 @@ void shProductSoa(int shOrder, std::span<const float> f, std::span<const float> 
 /// Matrix of "multiply by f": M[r·columns + c] = ∫ f Y_r Y_c.
 /// @param f  [orderF²]; orderF >= rowsOrder + columnsOrder − 1 makes it exact for an f of unlimited bands
 /// @return [rowsOrder² × columnsOrder²], row-major
+/// @source [Sloan2008, "SH products"]
 std::vector<float> productMatrix(std::span<const float> f, int rowsOrder, int columnsOrder);
 
 /// Product with a prebuilt factor: out = M g. Allocates nothing.
 /// @param matrix  [rowsOrder² × columnsOrder²] of productMatrix; a square one is taken to be symmetric
 /// @param g       [columnsOrder²]   @param out  [rowsOrder²], apart from g
+/// @source as productMatrix
 void applyProductMatrix(std::span<const float> matrix, std::span<const float> g, std::span<float> out);
 
 /// One matrix for many vectors: out_k = M g_k, structures of arrays as in shProductSoa. Allocates nothing.
 /// @param matrix  [rowsOrder² × columnsOrder²]
-/// @param g       [columnsOrder² × stride]   @param out  [rowsOrder² × stride], apart from g; the last row of
-/// each
-///                may end after count floats
+/// @param g       at least (columnsOrder² − 1)·stride + count floats
+/// @param out     at least (rowsOrder² − 1)·stride + count, apart from g
+/// @param stride  >= count
+/// @source as productMatrix
 void applyProductMatrixSoa(std::span<const float> matrix, int rowsOrder, int columnsOrder,
                            std::span<const float> g, std::span<float> out, size_t count, size_t stride);
 
@@ -71,7 +74,8 @@ enum class ShProductMethod {
     kMatrixBuild,   ///< that matrix built, by productMatrix
 };
 
-/// What one product of n bands costs, counted, not measured.
+/// What one product of n bands costs: operations counted in the code, a multiplication and an addition even
+/// where a machine fuses them.
 struct ShProductCost {
     int64_t multiplications, additions;
 };

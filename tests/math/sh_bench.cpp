@@ -1,4 +1,4 @@
-// Speed of evaluation and products, by number of bands. Counter ns: nanoseconds per direction or product.
+// Speed of evaluation and products, by number of bands. Counter each: time per direction or product.
 #include <benchmark/benchmark.h>
 
 #include <cstdint>
@@ -31,10 +31,10 @@ class AlignedFloats {
     mutable std::vector<float> memory_;
 };
 
-void countNanoseconds(benchmark::State& state, size_t perIteration) {
-    state.counters["ns"] =
-        benchmark::Counter(double(perIteration) * 1e-9,
-                           benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+/// Time of one of the `perIteration` results of an iteration.
+void countEach(benchmark::State& state, size_t perIteration) {
+    state.counters["each"] = benchmark::Counter(
+        double(perIteration), benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
 }
 
 void evalSingle(benchmark::State& state) {
@@ -47,7 +47,7 @@ void evalSingle(benchmark::State& state) {
             benchmark::DoNotOptimize(out.data());
             benchmark::ClobberMemory();
         }
-    countNanoseconds(state, kCount);
+    countEach(state, kCount);
 }
 BENCHMARK(evalSingle)->DenseRange(3, 10);
 
@@ -59,7 +59,7 @@ void evalRows(benchmark::State& state) {
         evalShBatch(n, directions, out);
         benchmark::ClobberMemory();
     }
-    countNanoseconds(state, kCount);
+    countEach(state, kCount);
 }
 BENCHMARK(evalRows)->DenseRange(3, 10);
 
@@ -76,7 +76,7 @@ void evalSoa(benchmark::State& state) {
         evalShSoa(n, x, y, z, out.span(), kStride);
         benchmark::ClobberMemory();
     }
-    countNanoseconds(state, kCount);
+    countEach(state, kCount);
 }
 BENCHMARK(evalSoa)->DenseRange(3, 10);
 
@@ -95,7 +95,7 @@ void productTable(benchmark::State& state) {
     const Factors x{size_t(shCount(n))};
     for (auto _ : state)
         benchmark::DoNotOptimize(shProduct(x.f.span(), x.g.span(), n));  // allocates its result
-    countNanoseconds(state, 1);
+    countEach(state, 1);
 }
 BENCHMARK(productTable)->DenseRange(3, 6);
 
@@ -106,7 +106,7 @@ void productSingle(benchmark::State& state) {
         shProduct(n, x.f.span(), x.g.span(), x.out.span());
         benchmark::ClobberMemory();
     }
-    countNanoseconds(state, 1);
+    countEach(state, 1);
 }
 BENCHMARK(productSingle)->DenseRange(3, 6);
 
@@ -117,7 +117,7 @@ void productSoa(benchmark::State& state) {
         shProductSoa(n, x.f.span(), x.g.span(), x.out.span(), kCount, kStride);
         benchmark::ClobberMemory();
     }
-    countNanoseconds(state, kCount);
+    countEach(state, kCount);
 }
 BENCHMARK(productSoa)->DenseRange(3, 6);
 
@@ -129,7 +129,7 @@ void productByMatrix(benchmark::State& state) {
         applyProductMatrix(matrix, x.g.span(), x.out.span());
         benchmark::ClobberMemory();
     }
-    countNanoseconds(state, 1);
+    countEach(state, 1);
 }
 BENCHMARK(productByMatrix)->DenseRange(3, 6);
 
@@ -141,7 +141,7 @@ void productByMatrixSoa(benchmark::State& state) {
         applyProductMatrixSoa(matrix, n, n, x.g.span(), x.out.span(), kCount, kStride);
         benchmark::ClobberMemory();
     }
-    countNanoseconds(state, kCount);
+    countEach(state, kCount);
 }
 BENCHMARK(productByMatrixSoa)->DenseRange(3, 6);
 
@@ -149,7 +149,7 @@ void productMatrixBuild(benchmark::State& state) {
     const int n = int(state.range(0));
     const Factors x{size_t(shCount(n))};
     for (auto _ : state) benchmark::DoNotOptimize(productMatrix(x.f.span(), n, n));
-    countNanoseconds(state, 1);
+    countEach(state, 1);
 }
 BENCHMARK(productMatrixBuild)->DenseRange(3, 6);
 

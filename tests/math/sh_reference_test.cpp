@@ -51,6 +51,9 @@ TEST(ShReference, Product) {
     const std::vector<float> g(std::begin(kReferenceG), std::end(kReferenceG));
     const std::vector<float> product = shProduct(f, g, kReferenceExpansionOrder);
     expectValues(product, kReferenceProduct, product.size(), 5e-6);
+    std::vector<float> byCode(product.size());
+    shProduct(kReferenceExpansionOrder, f, g, byCode);
+    expectValues(byCode, kReferenceProduct, byCode.size(), 5e-6);
 }
 
 TEST(ShReference, ConversionToTheHBasis) {
