@@ -21,6 +21,9 @@ struct MeasureCommand {
 const std::vector<MeasureCommand> kMeasureCommands = {
     {"basis", "Habel Fig. 3, Gautron Figs. 4, 5 and 10: bases against signals and coefficients",
      runMeasureBasis},
+    {"parameterization", "Iwanicki & Sloan Fig. 8: error of tables over the sphere by layout and size",
+     runMeasureParameterization},
+    {"product", "products of expansions: time, non-zeros, multiplications", runMeasureProduct},
     {"rotation", "Křivánek Fig. 3 and Table 1: errors and time of every rotation", runMeasureRotation},
 };
 

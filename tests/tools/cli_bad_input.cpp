@@ -285,5 +285,56 @@ TEST(BadInput, RelightOptions) {
     expectRefused(folder, {"relight", "box.prt"}, kUsage, {"-o"});
 }
 
+TEST(BadInput, MeasureOptions) {
+    Folder folder;
+    const std::vector<std::vector<std::string>> bad = {
+        {"basis", "--signal", "sound"},
+        {"basis", "--signals", "3"},
+        {"basis", "--max-order", "17"},
+        {"basis", "--env", "sky:clear", "--signal", "functions"},
+        {"parameterization", "--layouts", "mercator"},
+        {"parameterization", "--points", "999"},
+        {"product", "--orders", "11"},
+        {"product", "--orders", "six"},
+        {"product", "--methods", "fourier"},
+        {"product", "--rounds", "0"},
+        {"rotation", "--orders", "0"},
+        {"rotation", "--orders", "3-"},
+        {"rotation", "--methods", "zxzxz,"},
+        {"rotation", "--error-orders", "25"},
+        {"rotation", "--hsh-orders", "11"},
+        {"rotation", "--max-angle", "91"},
+        {"rotation", "--table-angles", "1"},
+        {"rotation", "--rounds", "-1"},
+        {"rotation", "--table-angles", "many"},
+        {"rotation", "--plot", "bmp"}};
+    for (const auto& words : bad) {
+        std::vector<std::string> arguments = {"measure", "--quiet"};
+        arguments.insert(arguments.begin() + 1, words.begin(), words.end());
+        expectRefused(folder, arguments, kUsage, {"prt measure " + words[0], words[1]});
+    }
+    for (const char* name : {"basis", "parameterization", "product", "rotation"})
+        expectRefused(folder, {"measure", name, "--frobnicate"}, kUsage, {"--frobnicate"});
+    expectRefused(folder, {"measure", "weight"}, kUsage, {"weight", "prt measure --help"});
+}
+
+TEST(BadInput, MeasureIntoAFolderThatIsMissing) {
+    Folder folder;
+    expectRefused(folder,
+                  {"measure", "basis", "--signal", "functions", "--bases", "h", "-o", "missing/x", "--quiet"},
+                  kOutput, {"missing/x"});
+    expectRefused(folder,
+                  {"measure", "parameterization", "--orders", "2", "--points", "1000", "--max-samples", "100",
+                   "-o", "missing/x", "--quiet"},
+                  kOutput, {"missing/x"});
+    expectRefused(folder,
+                  {"measure", "product", "--orders", "3", "--rounds", "1", "-o", "missing/x", "--quiet"},
+                  kOutput, {"missing/x"});
+    expectRefused(folder,
+                  {"measure", "rotation", "--orders", "3", "--rounds", "1", "--error-orders", "3",
+                   "--hsh-orders", "2", "-o", "missing/x", "--quiet"},
+                  kOutput, {"missing/x"});
+}
+
 }  // namespace
 }  // namespace prt::test

@@ -7,6 +7,7 @@ namespace prt::test {
 namespace {
 
 const std::vector<std::string> kCommands = {"precompute", "compress", "tabulate", "relight", "info"};
+const std::vector<std::string> kMeasurements = {"basis", "parameterization", "product", "rotation"};
 
 TEST(Options, NoArgumentsPrintsUsageAndFails) {
     Folder folder;
@@ -37,6 +38,24 @@ TEST(Options, EverySubcommandHasHelpWithDefaultsAndRanges) {
         EXPECT_NE(help.find(text), std::string::npos) << text << " in\n" << help;
 }
 
+TEST(Options, EveryMeasurementIsListedAndHasHelp) {
+    Folder folder;
+    const ProcessResult list = runPrt(folder, {"measure", "--help"});
+    EXPECT_EQ(list.exitCode, 0) << list.err;
+    const ProcessResult bare = runPrt(folder, {"measure"});
+    EXPECT_EQ(bare.exitCode, 2);
+    EXPECT_EQ(std::count(bare.err.begin(), bare.err.end(), '\n'), 1) << bare.err;
+    for (const std::string& name : kMeasurements) {
+        EXPECT_NE(list.out.find("\n  " + name + " "), std::string::npos) << name;
+        const ProcessResult result = runPrt(folder, {"measure", name, "--help"});
+        EXPECT_EQ(result.exitCode, 0) << name;
+        EXPECT_TRUE(result.err.empty()) << result.err;
+        for (const char* option : {"--output", "--plot", "--json", "--quiet", "[0..1024, default 0]"})
+            EXPECT_NE(result.out.find(option), std::string::npos) << name << " " << option;
+    }
+    EXPECT_TRUE(folder.files().empty());
+}
+
 TEST(Options, SubcommandsWithoutArgumentsAreUsageErrors) {
     Folder folder;
     for (const std::string& command : kCommands) {
@@ -54,13 +73,23 @@ TEST(Options, JsonOnStandardOutputIsNothingButJson) {
         {"compress", "box.prt", "--components", "4"},
         {"tabulate", "box.prt", "sky:clear", "--size", "8"},
         {"relight", "box.prt", "-o", "a.png", "--size", "32x20", "--compare-reference"},
-        {"info", "box.prt"}};
+        {"info", "box.prt"},
+        {"measure", "basis", "--signal", "functions", "--bases", "h", "--plot", "none"},
+        {"measure", "parameterization", "--orders", "2", "--points", "1000", "--max-samples", "100", "--plot",
+         "none"},
+        {"measure", "product", "--orders", "3", "--rounds", "1", "--plot", "none"},
+        {"measure", "rotation", "--orders", "3", "--rounds", "1", "--error-orders", "3", "--hsh-orders", "2",
+         "--table-angles", "5", "--plot", "none"}};
     const std::vector<std::vector<std::string>> keys = {
         {"points", "rays", "rays_per_s", "seconds", "peak_rss_bytes", "validity"},
         {"components", "explained_variance", "relative_rmse", "seconds"},
         {"rows"},
         {"floor_rmse", "rows"},
-        {"format_version", "conventions", "files"}};
+        {"format_version", "conventions", "files"},
+        {"measure", "rows"},
+        {"measure", "points", "rows"},
+        {"measure", "cpu", "rows"},
+        {"measure", "cpu", "rows", "errors", "hsh_errors", "hsh_tables", "paper_times"}};
     for (size_t i = 0; i < commands.size(); ++i) {
         auto arguments = commands[i];
         arguments.insert(arguments.end(), {"--json", "-"});
@@ -69,7 +98,7 @@ TEST(Options, JsonOnStandardOutputIsNothingButJson) {
         const auto json = nlohmann::json::parse(result.out, nullptr, false);
         ASSERT_TRUE(json.is_object()) << result.out;
         for (const std::string& key : keys[i])
-            EXPECT_TRUE(json.contains(key)) << commands[i][0] << " " << key;
+            EXPECT_TRUE(json.contains(key)) << commands[i][0] << " " << commands[i][1] << " " << key;
     }
 }
 

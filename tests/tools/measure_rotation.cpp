@@ -166,8 +166,8 @@ Counted operator*(CountedConstant a, Counted) {
     return {};
 }
 
-constexpr auto kIn = [](size_t) { return Counted(); };
-constexpr auto kOut = [](size_t, const Counted&) {};
+constexpr auto kIn = [](auto&&...) { return Counted(); };
+constexpr auto kOut = [](auto&&...) {};
 constexpr auto kBands = std::make_index_sequence<detail::kUnrolledBands>();
 
 int countZxzxz(int n) {

@@ -19,7 +19,7 @@ struct RotationResults {
 
 /// Tables `rows`, `errors`, `hsh_errors`, `hsh_tables` and `paper_times`; figures of times (PREFIX), of
 /// Taylor errors as [Krivanek2006, Fig. 3] (-errors) and of hemispherical harmonics (-hsh). What does not
-/// apply is null in JSON, nan in CSV.
+/// apply is null in JSON, empty in CSV.
 Measurement rotationMeasurement(const RotationResults& results);
 
 }  // namespace prt::tools
