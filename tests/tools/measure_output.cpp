@@ -123,6 +123,9 @@ TEST_F(MeasureFiles, MeasurementWritesCsvPlotAndJson) {
     EXPECT_NE(json.find("\"mse\": 0.25"), std::string::npos);
     EXPECT_NE(json.find("\"errors\": []"), std::string::npos);
     EXPECT_THROW(writeMeasurement(measurement, {.prefix = path("missing/x")}, common, Report()), OutputError);
+    EXPECT_THROW(checkMeasureOutput({.prefix = path("missing/x")}), OutputError);
+    checkMeasureOutput({.prefix = path("y")});
+    EXPECT_FALSE(std::filesystem::exists(path("y.csv")));
 }
 
 TEST(MeasureTiming, RunsEveryMethodAndCountsItems) {

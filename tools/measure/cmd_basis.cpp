@@ -187,6 +187,7 @@ void runMeasureBasis(int argc, char** argv) {
     checkArguments(arguments);
     if (const size_t at = arguments.output.prefix.find("SIGNAL"); at != std::string::npos)
         arguments.output.prefix.replace(at, 6, arguments.signal);
+    checkMeasureOutput(arguments.output);
 
     Report report;
     report.set("signal", arguments.signal).set("seed", arguments.seed);

@@ -50,7 +50,7 @@ Figure drawPanels(const ParameterizationSettings& settings, const std::vector<Pa
 
 void runMeasureParameterization(int argc, char** argv) {
     ParameterizationSettings settings;
-    MeasureOptions options{.prefix = "parameterization"};
+    MeasureOptions options{.prefix = "measure-parameterization"};
     std::string orders = "3,6", layouts = "all";
     std::vector<std::string> names;
     for (const SphereMapFamily& family : sphereMapFamilies()) names.push_back(family.name);
@@ -69,6 +69,7 @@ void runMeasureParameterization(int argc, char** argv) {
     line.flag("--half", settings.half, "tables rounded to half floats too");
     addMeasureOptions(line, options);
     if (!line.parse(argc, argv)) return;
+    checkMeasureOutput(options);
     settings.shOrders = parseIntegerList("--orders", orders, 1, kMaxBundleShOrder);
     settings.layouts = parseNameList("--layouts", layouts, names);
 

@@ -42,7 +42,7 @@ Figure costFigure(const std::vector<ProductCost>& costs, const std::vector<std::
 
 void runMeasureProduct(int argc, char** argv) {
     ProductCostSettings settings;
-    MeasureOptions options{.prefix = "product"};
+    MeasureOptions options{.prefix = "measure-product"};
     std::string orders = "3-6", methods = "all";
     CommandLine line(
         "prt measure product",
@@ -55,6 +55,7 @@ void runMeasureProduct(int argc, char** argv) {
     line.integer("--rounds", settings.rounds, 1, 1000, "times are medians over so many rounds");
     addMeasureOptions(line, options);
     if (!line.parse(argc, argv)) return;
+    checkMeasureOutput(options);
     settings.shOrders = parseIntegerList("--orders", orders, 1, kMaxBundleShOrder);
     settings.methods = parseNameList("--methods", methods, productMethods());
 

@@ -14,7 +14,7 @@ namespace {
 struct Arguments {
     std::string orders = "3-10", methods = "all", errorOrders = "5,8", hshOrders = "5,10";
     int maxAngle = 25, tableAngles = 46, rounds = 15;
-    MeasureOptions output{.prefix = "rotation"};
+    MeasureOptions output{.prefix = "measure-rotation"};
 };
 
 RotationResults measureRotation(const Arguments& arguments) {
@@ -77,6 +77,7 @@ void runMeasureRotation(int argc, char** argv) {
                  "angles in the tables of hemispherical harmonics that are timed");
     addMeasureOptions(line, arguments.output);
     if (!line.parse(argc, argv)) return;
+    checkMeasureOutput(arguments.output);
 
     const Stopwatch watch;
     const Measurement measurement = rotationMeasurement(measureRotation(arguments));

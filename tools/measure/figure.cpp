@@ -60,7 +60,7 @@ std::string curves(const Panel& panel, size_t index) {
             s == 0 ? "plot " : ", \\\n  ", index, s, kColours[std::min(s, kColourCount - 1)],
             series.dashed ? 2 : 1, 1 + int(s % 13), quoted(series.name));
     }
-    return data + axes(panel) + "set key below maxrows 4 samplen 2\n" + plot + "\n";
+    return data + axes(panel) + "set key below maxrows 4 samplen 2 height 1\n" + plot + "\n";
 }
 
 std::string bars(const Panel& panel, size_t index) {

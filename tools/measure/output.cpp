@@ -34,6 +34,10 @@ void addMeasureOptions(CommandLine& line, MeasureOptions& options) {
     line.choice("--plot", options.plot, {"svg", "png", "none"}, "format of the plot; needs gnuplot");
 }
 
+void checkMeasureOutput(const MeasureOptions& options) {
+    const AtomicFile file(fileName(options.prefix, "", "csv"));  // gone again at once
+}
+
 void writeMeasurement(const Measurement& measurement, const MeasureOptions& options,
                       const CommonOptions& common, Report report) {
     std::vector<std::string> written;

@@ -19,6 +19,10 @@ struct MeasureOptions {
 /// Declares -o/--output and --plot.
 void addMeasureOptions(CommandLine& line, MeasureOptions& options);
 
+/// Makes sure before long work that PREFIX.csv can be written.
+/// @throws OutputError
+void checkMeasureOutput(const MeasureOptions& options);
+
 struct Measurement {
     std::string name;                                      ///< "parameterization", …
     Table rows;                                            ///< CSV in PREFIX.csv, JSON key `rows`
