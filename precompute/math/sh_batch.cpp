@@ -19,9 +19,10 @@ using detail::lanesAt;
 using detail::quadAt;
 
 /// Any number of bands.
-[[gnu::always_inline]] inline void evalByTable(int shOrder, const Lanes& x, const Lanes& y, const Lanes& z,
-                                               float* out, size_t stride) {
+[[gnu::always_inline]] inline void evalByTable(int shOrder, const float* xIn, const float* yIn,
+                                               const float* zIn, float* out, size_t stride) {
     const LegendreRecurrence<float>& t = kLegendreRecurrence<float>;
+    const Lanes x = lanesAt(xIn).value, y = lanesAt(yIn).value, z = lanesAt(zIn).value;
     Lanes q[legendreCount(kMaxShOrder)];
     Lanes cosPart[kMaxShOrder], sinPart[kMaxShOrder];
     cosPart[0] = Lanes{} + 1.0f;
@@ -47,47 +48,53 @@ using detail::quadAt;
         }
 }
 
+/// The code for one direction as the body of a loop, which becomes vectors of whatever width the machine has.
 template <int N>
-[[gnu::always_inline]] inline void evalByStraightLine(const Lanes& x, const Lanes& y, const Lanes& z,
-                                                      float* out, size_t stride) {
-    detail::evalShStraightLine<N, Lanes>(
-        x, y, z, [&](int i, const Lanes& value) __attribute__((always_inline)) {
-            lanesAt(out + size_t(i) * stride) = value;
-        });
+[[gnu::always_inline]] inline void evalByStraightLine(const float* x, const float* y, const float* z,
+                                                      size_t blocks, float* out, size_t stride) {
+    for (size_t first = 0; first < blocks * kLanes; first += kLanes) {
+        PRT_INDEPENDENT_LOOP
+        for (size_t lane = 0; lane < kLanes; ++lane) {
+            const size_t k = first + lane;
+            detail::evalShStraightLine<N, float>(
+                x[k], y[k], z[k], [&](int i, float value) __attribute__((always_inline)) {
+                    out[size_t(i) * stride + k] = value;
+                });
+        }
+    }
 }
 
-/// Sixteen directions.
-/// @param x, y, z  [16]   @param out  [n²] rows of 16, stride apart
-PRT_TARGET_CLONES void evalBlock(int shOrder, const float* xIn, const float* yIn, const float* zIn,
-                                 float* out, size_t stride) {
-    const Lanes x = lanesAt(xIn).value;
-    const Lanes y = lanesAt(yIn).value;
-    const Lanes z = lanesAt(zIn).value;
+/// Directions in blocks of sixteen.
+/// @param x, y, z  [blocks·16]   @param out  [n²] rows of as many, stride apart
+PRT_TARGET_CLONES void evalBlocks(int shOrder, const float* x, const float* y, const float* z, size_t blocks,
+                                  float* out, size_t stride) {
     static_assert(detail::kMaxStraightLineOrder == 10);
     switch (shOrder) {
         case 1:
-            return evalByStraightLine<1>(x, y, z, out, stride);
+            return evalByStraightLine<1>(x, y, z, blocks, out, stride);
         case 2:
-            return evalByStraightLine<2>(x, y, z, out, stride);
+            return evalByStraightLine<2>(x, y, z, blocks, out, stride);
         case 3:
-            return evalByStraightLine<3>(x, y, z, out, stride);
+            return evalByStraightLine<3>(x, y, z, blocks, out, stride);
         case 4:
-            return evalByStraightLine<4>(x, y, z, out, stride);
+            return evalByStraightLine<4>(x, y, z, blocks, out, stride);
         case 5:
-            return evalByStraightLine<5>(x, y, z, out, stride);
+            return evalByStraightLine<5>(x, y, z, blocks, out, stride);
         case 6:
-            return evalByStraightLine<6>(x, y, z, out, stride);
+            return evalByStraightLine<6>(x, y, z, blocks, out, stride);
         case 7:
-            return evalByStraightLine<7>(x, y, z, out, stride);
+            return evalByStraightLine<7>(x, y, z, blocks, out, stride);
         case 8:
-            return evalByStraightLine<8>(x, y, z, out, stride);
+            return evalByStraightLine<8>(x, y, z, blocks, out, stride);
         case 9:
-            return evalByStraightLine<9>(x, y, z, out, stride);
+            return evalByStraightLine<9>(x, y, z, blocks, out, stride);
         case 10:
-            return evalByStraightLine<10>(x, y, z, out, stride);
+            return evalByStraightLine<10>(x, y, z, blocks, out, stride);
         default:
-            return evalByTable(shOrder, x, y, z, out, stride);
+            break;
     }
+    for (size_t k = 0; k < blocks * kLanes; k += kLanes)
+        evalByTable(shOrder, x + k, y + k, z + k, out + k, stride);
 }
 
 /// rows[k·columns + i] = lanes[i·16 + k] for k < rowCount.
@@ -127,8 +134,8 @@ void evalShSoa(int shOrder, std::span<const float> x, std::span<const float> y, 
     PRT_CHECK_LE(count, stride);
     if (count == 0) return;
     PRT_CHECK_LE((functions - 1) * stride + count, out.size());
-    size_t k = 0;
-    for (; k + kLanes <= count; k += kLanes) evalBlock(shOrder, &x[k], &y[k], &z[k], &out[k], stride);
+    const size_t blocks = count / kLanes, k = blocks * kLanes;
+    evalBlocks(shOrder, x.data(), y.data(), z.data(), blocks, out.data(), stride);
     if (k == count) return;
     // The rest goes through a block of its own.
     float rest[3][kLanes] = {};
@@ -136,7 +143,7 @@ void evalShSoa(int shOrder, std::span<const float> x, std::span<const float> y, 
     std::copy(x.begin() + ptrdiff_t(k), x.end(), rest[0]);
     std::copy(y.begin() + ptrdiff_t(k), y.end(), rest[1]);
     std::copy(z.begin() + ptrdiff_t(k), z.end(), rest[2]);
-    evalBlock(shOrder, rest[0], rest[1], rest[2], block, kLanes);
+    evalBlocks(shOrder, rest[0], rest[1], rest[2], 1, block, kLanes);
     for (size_t i = 0; i < functions; ++i) std::copy_n(block + i * kLanes, count - k, &out[i * stride + k]);
 }
 
@@ -153,7 +160,7 @@ void evalShBatch(int shOrder, std::span<const Vec3f> directions, std::span<float
             const Vec3f& d = directions[first + std::min(k, n - 1)];
             for (int axis = 0; axis < 3; ++axis) xyz[axis][k] = d[axis];
         }
-        evalBlock(shOrder, xyz[0], xyz[1], xyz[2], block, kLanes);
+        evalBlocks(shOrder, xyz[0], xyz[1], xyz[2], 1, block, kLanes);
         transposeBlock(block, int(columns), int(n), out.data() + first * columns);
     }
 }

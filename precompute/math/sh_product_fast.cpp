@@ -1,6 +1,7 @@
 // Products of spherical harmonics without allocation: one, many lanes, and by prebuilt matrices. The
 // straight-line code comes from tools/generate_sh_product.py. [Ren2006], [Sloan2008, "SH products"].
 #include <algorithm>
+#include <utility>
 
 #include "precompute/base/check.h"
 #include "precompute/base/parallel.h"
@@ -15,8 +16,6 @@ namespace {
 using detail::kLanes;
 using detail::Lanes;
 using detail::lanesAt;
-using detail::Quad;
-using detail::quadAt;
 using detail::ShProductCode;
 
 /// One column of a structure of arrays.
@@ -112,32 +111,28 @@ const std::vector<TriplingCoefficient>* tableFor(int shOrder) {
     return shOrder <= kMaxProductCodeOrder ? nullptr : &triplingCoefficients(shOrder, shOrder, shOrder);
 }
 
-/// out = M g for a symmetric M: Σ_c g_c M_c, in vectors of 16 and 4 and at most three numbers of their own;
-/// two sums at a time, to hide the latency of additions.
+/// Σ_c term(c), c < sizeof...(C), unrolled, in four sums that do not wait for each other.
+template <typename Term, size_t... C>
+[[gnu::always_inline]] inline float unrolledSum(std::index_sequence<C...>, const Term& term) {
+    float sum[4] = {};
+    ((sum[C % 4] += term(C)), ...);
+    return (sum[0] + sum[1]) + (sum[2] + sum[3]);
+}
+
+/// out = M g for a symmetric M, whose columns lie as rows: the loops over rows become vectors.
 template <size_t N>
 [[gnu::always_inline]] inline void applySymmetric(const float* matrix, const float* g, float* out) {
-    constexpr size_t kQuads = N % kLanes / 4, kQuadsBegin = N / kLanes * kLanes, kRestBegin = N / 4 * 4;
-    struct Sum {
-        Lanes lanes[N / kLanes + 1];
-        Quad quads[kQuads + 1];
-        float rest[N % 4 + 1];
+    const auto row = [&](size_t r) __attribute__((always_inline)) {
+        out[r] = unrolledSum(
+            std::make_index_sequence<N>{}, [&](size_t c) __attribute__((always_inline)) {
+                return matrix[c * N + r] * g[c];
+            });
     };
-    Sum sums[2] = {};
-    const auto add = [&](size_t c, Sum & sum) __attribute__((always_inline)) {
-        const float* row = matrix + c * N;
-        for (size_t b = 0; b < N / kLanes; ++b) sum.lanes[b] += g[c] * lanesAt(row + b * kLanes).value;
-        for (size_t b = 0; b < kQuads; ++b) sum.quads[b] += g[c] * quadAt(row + kQuadsBegin + 4 * b).value;
-        for (size_t r = 0; r < N % 4; ++r) sum.rest[r] += g[c] * row[kRestBegin + r];
-    };
-    for (size_t c = 0; c + 1 < N; c += 2) {
-        add(c, sums[0]);
-        add(c + 1, sums[1]);
-    }
-    if (N % 2 == 1) add(N - 1, sums[0]);
-    for (size_t b = 0; b < N / kLanes; ++b) lanesAt(out + b * kLanes) = sums[0].lanes[b] + sums[1].lanes[b];
-    for (size_t b = 0; b < kQuads; ++b)
-        quadAt(out + kQuadsBegin + 4 * b) = sums[0].quads[b] + sums[1].quads[b];
-    for (size_t r = 0; r < N % 4; ++r) out[kRestBegin + r] = sums[0].rest[r] + sums[1].rest[r];
+    constexpr size_t kWhole = N / kLanes * kLanes;
+    PRT_INDEPENDENT_LOOP
+    for (size_t r = 0; r < kWhole; ++r) row(r);
+    PRT_INDEPENDENT_LOOP
+    for (size_t r = kWhole; r < N; ++r) row(r);
 }
 
 /// out = M g, a row at a time.
@@ -171,24 +166,44 @@ PRT_TARGET_CLONES void applySingle(const float* matrix, size_t rows, size_t colu
     }
 }
 
-/// Rows r … r + Count − 1 of M times all columns' lanes.
-template <size_t Count>
-[[gnu::always_inline]] inline void applyRowsToLanes(const float* matrix, size_t columns, const float* g,
-                                                    float* out, size_t stride, size_t r) {
-    Lanes sum[Count] = {};
-    const float* row = matrix + r * columns;
-    for (size_t c = 0; c < columns; ++c) {
-        const Lanes value = lanesAt(g + c * stride).value;
-        for (size_t i = 0; i < Count; ++i) sum[i] += row[i * columns + c] * value;
+/// out = M g for sixteen columns, any size of M.
+[[gnu::always_inline]] inline void applyToLanes(const float* matrix, size_t rows, size_t columns,
+                                                const float* g, float* out, size_t stride) {
+    for (size_t r = 0; r < rows; ++r, matrix += columns) {
+        Lanes sum = {};
+        for (size_t c = 0; c < columns; ++c) sum += matrix[c] * lanesAt(g + c * stride).value;
+        lanesAt(out + r * stride) = sum;
     }
-    for (size_t i = 0; i < Count; ++i) lanesAt(out + (r + i) * stride) = sum[i];
+}
+
+/// The same for a number of columns known to the compiler.
+template <size_t Columns>
+[[gnu::always_inline]] inline void applyUnrolledToLanes(const float* matrix, size_t rows, const float* g,
+                                                        float* out, size_t stride) {
+    for (size_t r = 0; r < rows; ++r, matrix += Columns) {
+        PRT_INDEPENDENT_LOOP
+        for (size_t k = 0; k < kLanes; ++k)
+            out[r * stride + k] = unrolledSum(
+                std::make_index_sequence<Columns>{}, [&](size_t c) __attribute__((always_inline)) {
+                    return matrix[c] * g[c * stride + k];
+                });
+    }
 }
 
 PRT_TARGET_CLONES void applyBlock(const float* matrix, size_t rows, size_t columns, const float* g,
                                   float* out, size_t stride) {
-    size_t r = 0;
-    for (; r + 4 <= rows; r += 4) applyRowsToLanes<4>(matrix, columns, g, out, stride, r);
-    for (; r < rows; ++r) applyRowsToLanes<1>(matrix, columns, g, out, stride, r);
+    switch (columns) {
+        case 9:
+            return applyUnrolledToLanes<9>(matrix, rows, g, out, stride);
+        case 16:
+            return applyUnrolledToLanes<16>(matrix, rows, g, out, stride);
+        case 25:
+            return applyUnrolledToLanes<25>(matrix, rows, g, out, stride);
+        case 36:
+            return applyUnrolledToLanes<36>(matrix, rows, g, out, stride);
+        default:
+            return applyToLanes(matrix, rows, columns, g, out, stride);
+    }
 }
 
 /// The last items of a structure of arrays, where they do not fill the lanes: in a block of their own.

@@ -1,5 +1,5 @@
-// Spherical harmonics of few bands as straight-line code, for one direction or many lanes of them at once:
-// T is float or a vector of floats. Internal to prt_math; included by the .cpp files that evaluate.
+// Spherical harmonics of few bands as straight-line code, for one direction or as the body of a loop over
+// many, which compilers vectorise. Internal to prt_math; included by the .cpp files that evaluate.
 #pragma once
 
 #include <array>
@@ -56,7 +56,7 @@ template <int N, int M, int L, typename T, typename Store>
         q = (kLegendreRecurrence<float>.rise[kIndex] * z) * one -
             kLegendreRecurrence<float>.fall[kIndex] * two;
     else if constexpr (kDegree < 2)
-        q = T{} + a[0];
+        q = a[0];
     else if constexpr (kDegree < 4)
         q = a[1] * zz + a[0];
     else
@@ -90,8 +90,8 @@ template <int N, typename T, typename Store>
                                                       const Store& store) {
     static_assert(N >= 1 && N <= kMaxStraightLineOrder);
     T cosPart[N < 2 ? 2 : N], sinPart[N < 2 ? 2 : N];
-    cosPart[0] = T{} + 1.0f;
-    sinPart[0] = T{};
+    cosPart[0] = 1;
+    sinPart[0] = 0;
     cosPart[1] = x;
     sinPart[1] = y;
     evalColumns<N, 0>(z, T(z * z), cosPart, sinPart, store);
