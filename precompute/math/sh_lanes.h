@@ -29,8 +29,6 @@ struct [[gnu::packed, gnu::may_alias]] InArray {
         return *this;
     }
 };
-/// The same for code that only uses it in place: no function may return a reference to it.
-typedef float LanesInArray __attribute__((vector_size(sizeof(float) * kLanes), aligned(4), may_alias));
 
 /// The vector that begins at p.
 [[gnu::always_inline]] inline InArray<Lanes>& lanesAt(float* p) {
