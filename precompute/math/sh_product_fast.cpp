@@ -131,8 +131,12 @@ template <size_t N>
     constexpr size_t kWhole = N / kLanes * kLanes;
     PRT_INDEPENDENT_LOOP
     for (size_t r = 0; r < kWhole; ++r) row(r);
+    if constexpr (kWhole == N) return;
+    // The last rows once more as a whole vector where there are enough: a masked one would reach beyond the
+    // end, which costs ten times as much where the next page has never been touched.
+    constexpr size_t kRest = N < kLanes ? 0 : N - kLanes;
     PRT_INDEPENDENT_LOOP
-    for (size_t r = kWhole; r < N; ++r) row(r);
+    for (size_t r = kRest; r < N; ++r) row(r);
 }
 
 /// out = M g, a row at a time.
