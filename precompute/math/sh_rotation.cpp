@@ -13,14 +13,18 @@ namespace {
 
 using namespace detail;
 
-/// @param r  [9] by rows
+/// @param matrix  [9] by columns
+/// @return its deviation from a rotation
 template <typename T>
-[[gnu::always_inline]] inline void rotateBands(const double* r, int shOrder, const T* in, T* out) {
+[[gnu::always_inline]] inline double rotateBands(const double* matrix, int shOrder, const T* in, T* out) {
+    const MatrixRows rows(matrix);
+    double deviation;
+    rotationDeviation(rows.r, deviation);
     ZyzMultiples<T> angles;
     ZyzMultiples<double> exact;
-    ZyzTurns<double> turns;
-    zyzTurns(r, turns);
-    fillMultiples(turns, shOrder, angles, exact);
+    FirstMultiples first;
+    firstMultiples(rows.r, first);
+    fillMultiples(first, shOrder, angles, exact);
     rotateUnrolledBands<T, T>(shOrder, angles, CoefficientSource<T>{in}, CoefficientTarget<T>{out},
                               std::make_index_sequence<kUnrolledBands>());
     for (int l = kUnrolledBands; l < shOrder; ++l) {
@@ -29,35 +33,40 @@ template <typename T>
         rotateTableBand<double>(l, exact, v);
         for (int i = 0; i < 2 * l + 1; ++i) out[l * l + i] = T(v[i]);
     }
+    return deviation;
 }
 
-PRT_TARGET_CLONES void rotateFloats(const double* r, int shOrder, const float* in, float* out) {
-    rotateBands(r, shOrder, in, out);
+PRT_TARGET_CLONES double rotateFloats(const double* matrix, int shOrder, const float* in, float* out) {
+    return rotateBands(matrix, shOrder, in, out);
 }
-PRT_TARGET_CLONES void rotateDoubles(const double* r, int shOrder, const double* in, double* out) {
-    rotateBands(r, shOrder, in, out);
+PRT_TARGET_CLONES double rotateDoubles(const double* matrix, int shOrder, const double* in, double* out) {
+    return rotateBands(matrix, shOrder, in, out);
 }
 
 }  // namespace
 
 void rotateSh(const Mat3d& targetFromSource, int shOrder, std::span<const float> in, std::span<float> out) {
     checkRotationSizes(shOrder, in.size(), out.size());
-    const CheckedRows rows(targetFromSource);
-    rotateFloats(rows.r, shOrder, in.data(), out.data());
+    // Checked at the end: nothing has to wait for it.
+    const double deviationFromRotation =
+        rotateFloats(targetFromSource.data(), shOrder, in.data(), out.data());
+    PRT_CHECK_LT(deviationFromRotation, kMaxRotationDeviation);
 }
 
 void rotateSh(const Mat3d& targetFromSource, int shOrder, std::span<const double> in, std::span<double> out) {
     checkRotationSizes(shOrder, in.size(), out.size());
-    const CheckedRows rows(targetFromSource);
-    rotateDoubles(rows.r, shOrder, in.data(), out.data());
+    // Checked at the end: nothing has to wait for it.
+    const double deviationFromRotation =
+        rotateDoubles(targetFromSource.data(), shOrder, in.data(), out.data());
+    PRT_CHECK_LT(deviationFromRotation, kMaxRotationDeviation);
 }
 
 ZyzAngles zyzFromRotation(const Mat3d& rotation) {
     const CheckedRows rows(rotation);
-    ZyzTurns<double> t;
-    zyzTurns(rows.r, t);
-    return {std::atan2(t.sinAlpha, t.cosAlpha), std::atan2(std::abs(t.sinBeta), t.cosBeta),
-            std::atan2(t.sinGamma, t.cosGamma)};
+    FirstMultiples first;
+    firstMultiples(rows.r, first);
+    const auto angle = [&](ZyzAngle a) { return std::atan2(first.sine[a], first.cosine[a]); };
+    return {angle(kAlpha), angle(kBeta), angle(kGamma)};
 }
 
 Mat3d rotationFromZyz(const ZyzAngles& angles) {

@@ -36,31 +36,57 @@ struct LaneRows {
 
 typedef int32_t LaneBits __attribute__((vector_size(sizeof(int32_t) * kLanes)));
 
-template <>
-struct AngleTraits<Lanes> {
-    /// Below it sin²β counts as 0: the angles then differ by 1e-8.
-    static constexpr float kTinySquare = 1e-16f;
-    using Condition = LaneBits;
-    /// 1/√x of 0 and of normal numbers: an estimate from the exponent, good to 4 %, and three steps of
-    /// Newton, to 2e-7. 0 gives something finite.
-    [[gnu::always_inline]] static void inverseSqrt(const Lanes& x, Lanes& y) {
-        y = reinterpret_cast<Lanes>(0x5f375a86 - (reinterpret_cast<LaneBits>(x) >> 1));
-        const Lanes half = 0.5f * x;
-        for (int step = 0; step < 3; ++step) y *= 1.5f - half * y * y;
-    }
+/// 1/√x of 0 and of normal numbers: an estimate from the exponent, good to 4 %, and three steps of Newton, to
+/// 2e-7. 0 gives something finite.
+[[gnu::always_inline]] inline void inverseSqrt(const Lanes& x, Lanes& y) {
+    y = reinterpret_cast<Lanes>(0x5f375a86 - (reinterpret_cast<LaneBits>(x) >> 1));
+    const Lanes half = 0.5f * x;
+    for (int step = 0; step < 3; ++step) y *= 1.5f - half * y * y;
+}
+
+/// Cosines and sines of R = Rz(α) Ry(β) Rz(γ), in columns of ZyzAngle.
+struct LaneTurns {
+    Lanes cosine[3], sine[3];
+    Lanes halfTangent;  ///< for turnAngle
 };
 
+/// Decomposes matrices, as firstMultiples does one.
+/// @param r  [9] by rows
+[[gnu::always_inline]] inline void decompose(const Lanes* r, LaneTurns& t) {
+    const Lanes square = r[2] * r[2] + r[5] * r[5];
+    // Below it sin²β counts as 0: the angles then differ by 1e-8.
+    const LaneBits atPole = square < Lanes{} + 1e-16f;
+    Lanes inverse;
+    inverseSqrt(square, inverse);
+    const Lanes cosAlpha = atPole ? Lanes{} + 1.0f : r[2] * inverse,
+                sinAlpha = atPole ? Lanes{} : r[5] * inverse;
+    Lanes cosBeta = r[8], sinBeta = cosAlpha * r[2] + sinAlpha * r[5];
+    const Lanes side = r[8] < Lanes{} ? Lanes{} - 1.0f : Lanes{} + 1.0f;
+    Lanes cosSum = r[4] + side * r[0], sinSum = side * r[3] - r[1], inverseOfSum;
+    inverseSqrt(cosSum * cosSum + sinSum * sinSum, inverseOfSum);
+    cosSum *= inverseOfSum;
+    sinSum *= inverseOfSum;
+    t.halfTangent = sinBeta * inverseOfSum;  // the sum has length 1 + |cosβ|
+    normaliseTurn(cosBeta, sinBeta);
+    t.cosine[kAlpha] = cosAlpha;
+    t.sine[kAlpha] = sinAlpha;
+    t.cosine[kBeta] = cosBeta;
+    t.sine[kBeta] = sinBeta;
+    t.cosine[kGamma] = cosSum * cosAlpha + sinSum * sinAlpha;
+    t.sine[kGamma] = side * (sinSum * cosAlpha - cosSum * sinAlpha);
+}
+
 /// Multiples of the angles to shOrder − 1.
-[[gnu::always_inline]] inline void fillLaneMultiples(const ZyzTurns<Lanes>& t, int shOrder,
+[[gnu::always_inline]] inline void fillLaneMultiples(const LaneTurns& t, int shOrder,
                                                      ZyzMultiples<Lanes>& angles) {
-    const Lanes c[3] = {t.cosAlpha, t.cosBeta, t.cosGamma}, s[3] = {t.sinAlpha, t.sinBeta, t.sinGamma};
     for (int a = 0; a < 3; ++a) {
-        Lanes cosine = c[a], sine = s[a];
+        const Lanes c = t.cosine[a], s = t.sine[a];
+        Lanes cosine = c, sine = s;
         for (int m = 1; m < shOrder; ++m) {
             angles.cosine[m][a] = cosine;
             angles.sine[m][a] = sine;
-            const Lanes next = c[a] * cosine - s[a] * sine;
-            sine = s[a] * cosine + c[a] * sine;
+            const Lanes next = c * cosine - s * sine;
+            sine = s * cosine + c * sine;
             cosine = next;
         }
     }

@@ -15,8 +15,8 @@ PRT_TARGET_CLONES void rotateEach(int shOrder, const ConstLaneRows& rotations, c
                                   const LaneRows& out, LaneBits& allRotations) {
     Lanes r[9];
     loadRotations(rotations, r, allRotations);
-    ZyzTurns<Lanes> turns;
-    zyzTurns(r, turns);
+    LaneTurns turns;
+    decompose(r, turns);
     ZyzMultiples<Lanes> angles;
     fillLaneMultiples(turns, shOrder, angles);
     rotateLanes(shOrder, angles, in, out);

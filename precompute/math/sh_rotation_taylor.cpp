@@ -14,49 +14,37 @@ namespace {
 
 using namespace detail;
 
-/// The angles of one turn, as the kernels take them.
-struct TaylorTurn {
-    ZyzTurns<double> turns;
-    double beta;
-};
-
-TaylorTurn taylorTurn(const ZyzAngles& a) {
-    TaylorTurn t{};
-    t.turns.cosAlpha = std::cos(a.alphaRad);
-    t.turns.sinAlpha = std::sin(a.alphaRad);
-    t.turns.cosGamma = std::cos(a.gammaRad);
-    t.turns.sinGamma = std::sin(a.gammaRad);
-    t.beta = a.betaRad;
-    return t;
-}
-
 template <int kTwiceOrder>
-[[gnu::always_inline]] inline void rotateBands(const TaylorTurn& turn, int shOrder, const float* in,
-                                               float* out) {
+[[gnu::always_inline]] inline void rotateBands(const FirstMultiples& first, float beta, int shOrder,
+                                               const float* in, float* out) {
     ZyzMultiples<float> angles;
     ZyzMultiples<double> exact;
-    fillMultiples(turn.turns, shOrder, angles, exact);
-    rotateUnrolledTaylorBands<float, kTwiceOrder, float>(
-        shOrder, angles, float(turn.beta), CoefficientSource<float>{in}, CoefficientTarget<float>{out},
-        std::make_index_sequence<kUnrolledBands>());
+    fillMultiples(first, shOrder, angles, exact);
+    rotateUnrolledTaylorBands<float, kTwiceOrder, float>(shOrder, angles, beta, CoefficientSource<float>{in},
+                                                         CoefficientTarget<float>{out},
+                                                         std::make_index_sequence<kUnrolledBands>());
     for (int l = kUnrolledBands; l < shOrder; ++l) {
         float v[2 * kMaxShOrder - 1];
         for (int i = 0; i < 2 * l + 1; ++i) v[i] = in[l * l + i];
-        rotateTableTaylorBand<float, kTwiceOrder>(l, angles, float(turn.beta), v);
+        rotateTableTaylorBand<float, kTwiceOrder>(l, angles, beta, v);
         for (int i = 0; i < 2 * l + 1; ++i) out[l * l + i] = v[i];
     }
 }
 
-PRT_TARGET_CLONES void rotateFloats(const TaylorTurn& turn, ShTaylorOrder order, int shOrder, const float* in,
-                                    float* out) {
-    switch (order) {
-        case ShTaylorOrder::One:
-            return rotateBands<2>(turn, shOrder, in, out);
-        case ShTaylorOrder::OneAndHalf:
-            return rotateBands<3>(turn, shOrder, in, out);
-        case ShTaylorOrder::Two:
-            return rotateBands<4>(turn, shOrder, in, out);
-    }
+/// @param matrix  [9] by columns
+/// @return its deviation from a rotation
+PRT_TARGET_CLONES double rotateFloats(const double* matrix, ShTaylorOrder order, int shOrder, const float* in,
+                                      float* out) {
+    const MatrixRows rows(matrix);
+    FirstMultiples first;
+    firstMultiples(rows.r, first);
+    double deviation, beta;
+    rotationDeviation(rows.r, deviation);
+    turnAngle(double(first.cosine[kBeta]), first.halfTangent, beta);
+    if (order == ShTaylorOrder::One) rotateBands<2>(first, float(beta), shOrder, in, out);
+    if (order == ShTaylorOrder::OneAndHalf) rotateBands<3>(first, float(beta), shOrder, in, out);
+    if (order == ShTaylorOrder::Two) rotateBands<4>(first, float(beta), shOrder, in, out);
+    return deviation;
 }
 
 template <int kTwiceOrder>
@@ -76,9 +64,9 @@ PRT_TARGET_CLONES void rotateEach(ShTaylorOrder order, int shOrder, const ConstL
                                   const ConstLaneRows& in, const LaneRows& out, LaneBits& allRotations) {
     Lanes r[9], beta;
     loadRotations(rotations, r, allRotations);
-    ZyzTurns<Lanes> turns;
-    zyzTurns(r, turns);
-    turnAngle(turns, beta);
+    LaneTurns turns;
+    decompose(r, turns);
+    turnAngle(turns.cosine[kBeta], turns.halfTangent, beta);
     ZyzMultiples<Lanes> angles;
     fillLaneMultiples(turns, shOrder, angles);
     switch (order) {
@@ -150,17 +138,14 @@ void rotateShYTaylor(double betaRad, ShTaylorOrder order, int shOrder, std::span
 void rotateShTaylor(const Mat3d& targetFromSource, ShTaylorOrder order, int shOrder,
                     std::span<const float> in, std::span<float> out) {
     checkRotationSizes(shOrder, in.size(), out.size());
-    const CheckedRows rows(targetFromSource);
-    TaylorTurn turn;
-    zyzTurns(rows.r, turn.turns);
-    turnAngle(turn.turns, turn.beta);
-    rotateFloats(turn, order, shOrder, in.data(), out.data());
+    const double deviationFromRotation =
+        rotateFloats(targetFromSource.data(), order, shOrder, in.data(), out.data());
+    PRT_CHECK_LT(deviationFromRotation, kMaxRotationDeviation);
 }
 
 void rotateShTaylor(const ZyzAngles& angles, ShTaylorOrder order, int shOrder, std::span<const float> in,
                     std::span<float> out) {
-    checkRotationSizes(shOrder, in.size(), out.size());
-    rotateFloats(taylorTurn(angles), order, shOrder, in.data(), out.data());
+    rotateShTaylor(rotationFromZyz(angles), order, shOrder, in, out);
 }
 
 void rotateShTaylor(const ZyzAngles& angles, ShTaylorOrder order, int shOrder, std::span<const double> in,

@@ -28,7 +28,7 @@ void rotateShYTaylor(double betaRad, ShTaylorOrder order, int shOrder, std::span
 
 /// Rotates about z, y and z, the turn about y by the truncated series: (Rf)(ω) ≈ f(Rᵀω).
 /// @param targetFromSource  rotation matrix R, checked to 1e-3
-/// @param angles   instead of the matrix; any three
+/// @param angles   instead of the matrix; −π <= β <= π
 /// @param shOrder  n, 1..kMaxShOrder
 /// @param in, out  [n²]; the same memory, or apart
 /// @source [Krivanek2006, Sec. 3] in our orientation, the order of the steps included
