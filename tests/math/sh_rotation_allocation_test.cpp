@@ -39,6 +39,7 @@ TEST(RotationAllocations, OfHemisphericalHarmonicsAreNone) {
     std::vector<float> v(36, 1.0f);
     EXPECT_EQ(allocationsOf([&] { table.rotateByTable(r, v, v); }), 0u);
     EXPECT_EQ(allocationsOf([&] { table.rotateByDigonRemoval(r, v, v); }), 0u);
+    through.rotate(r, v, v);  // tables of the higher bands are made once
     EXPECT_EQ(allocationsOf([&] { through.rotate(r, v, v); }), 0u);
 }
 
