@@ -10,6 +10,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "compress/compress_visibility.h"
 #include "compress/irradiance_weights.h"
 #include "compress/pca.h"
 #include "compress/tables/normal_tables.h"
@@ -65,14 +66,16 @@ PcaMap makePcaMap(const VisibilityMap& visibility, const PcaResult& pca, std::ve
     map.mean = pca.mean;
     map.basis = pca.basis;
     map.variance = pca.variance;
+    map.projection = visibility.projection;
     map.weights = std::move(weights);
     // How the visibility was projected stays true of its compressed form.
     map.attributes = visibility.attributes;
     map.attributes["explainedVariance"] = fmt::format("{:.9g}", pca.explainedVariance);
     map.attributes["weightsFit"] = kind;
     if (kind == kIrradiance) {
-        map.attributes["weightsConeDegrees"] = fmt::format("{:.9g}", kIrradianceConeDegrees);
-        map.attributes["weightsFloor"] = fmt::format("{:.9g}", kIrradianceFloor);
+        const IrradianceWeight& weight = visibility.projection.weight;
+        map.attributes["weightsConeDegrees"] = fmt::format("{:.9g}", weight.coneDegrees);
+        map.attributes["weightsFloor"] = fmt::format("{:.9g}", weight.floor);
     }
     return map;
 }
@@ -168,11 +171,11 @@ CompressReport runCompress(const CompressSettings& settings) {
     std::vector<uint8_t> valid(visibility.validity.size());
     std::transform(visibility.validity.begin(), visibility.validity.end(), valid.begin(),
                    [](Validity validity) { return uint8_t(validity == Validity::Valid); });
-    const PcaResult pca = computePca(visibility.coefficients, valid, dimension, settings.components);
-    std::vector<float> weights =
-        settings.weights == kIrradiance
-            ? projectPcaForIrradiance(pca, visibility.coefficients, visibility.normals, visibility.shOrder)
-            : projectPca(pca, visibility.coefficients, dimension);
+    CompressedVisibility compressed = compressVisibility(
+        visibility.coefficients, valid, visibility.normals, visibility.shOrder, visibility.projection,
+        settings.components, settings.weights == kIrradiance ? WeightsFit::Irradiance : WeightsFit::Plain);
+    const PcaResult& pca = compressed.pca;
+    std::vector<float>& weights = compressed.weights;
     const PcaError error = pcaError(pca, visibility.coefficients, weights, valid, dimension);
     for (size_t i = 0; i < visibility.validity.size(); ++i)
         if (visibility.validity[i] == Validity::Empty)
@@ -184,8 +187,9 @@ CompressReport runCompress(const CompressSettings& settings) {
     report.explainedVariance = pca.explainedVariance;
     report.relativeRmse = error.relativeRmse;
     report.rmse = error.rmse;
-    report.irradianceRelativeRmse = irradianceRelativeRmse(pca, visibility.coefficients, weights,
-                                                           visibility.normals, valid, visibility.shOrder);
+    report.irradianceRelativeRmse =
+        irradianceRelativeRmse(pca, visibility.coefficients, weights, visibility.normals, valid,
+                               visibility.shOrder, visibility.projection.weight);
 
     throwIfInterrupted();
     BundleTransaction transaction(settings.bundlePath, false);

@@ -25,6 +25,8 @@ const std::vector<MeasureCommand> kMeasureCommands = {
      runMeasureParameterization},
     {"product", "products of expansions: time, non-zeros, multiplications", runMeasureProduct},
     {"rotation", "Křivánek Fig. 3 and Table 1: errors and time of every rotation", runMeasureRotation},
+    {"projection", "irradiance from plain and weighted visibility against ray-traced truth",
+     runMeasureProjection},
 };
 
 std::string usage() {

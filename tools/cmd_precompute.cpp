@@ -1,6 +1,7 @@
 // prt precompute: mesh file -> bundle.
 #include <fmt/format.h>
 
+#include "precompute/io/projection_attributes.h"
 #include "precompute/math/sh.h"
 #include "precompute/visibility/bake.h"
 #include "precompute/visibility/precompute_job.h"
@@ -20,6 +21,7 @@ Report toReport(const PrecomputeSettings& settings, const PrecomputeReport& resu
         .set("mesh", settings.meshPath)
         .set("domain", pointDomainName(settings.perVertex ? PointDomain::Vertex : PointDomain::Texel))
         .set("order", settings.shOrder)
+        .set("projection", projectionName(settings.projection.kind))
         .set("triangles", uint64_t(result.triangles))
         .set("vertices", uint64_t(result.vertices))
         .set("points", result.points)
@@ -46,6 +48,7 @@ Report toReport(const PrecomputeSettings& settings, const PrecomputeReport& resu
 
 void runPrecomputeCommand(int argc, char** argv) {
     PrecomputeSettings settings;
+    std::string projection = projectionName(settings.projection.kind);
     CommandLine line(
         "prt precompute", "Bakes spherical-harmonic visibility of a static mesh into a bundle.",
         "Meshes: .obj (+ .mtl), .ply, .off, .stl, .gltf, .glb; polygons, no normals or no UVs are fine.\n"
@@ -61,11 +64,14 @@ void runPrecomputeCommand(int argc, char** argv) {
                  "number of SH bands n (n*n coefficients)");
     line.integer("--rays", settings.rays, 1, kMaxBakeRays,
                  "directions over the sphere; those above a point's horizon are traced");
+    line.choice("--projection", projection, {"irradiance", "plain"},
+                "least squares of the irradiance that shading normals receive, or of visibility itself");
     line.real("--uv-scale", settings.load.uvScale, 1e-6, 1e9,
               "scene units per tile of box-projected texture coordinates, where the mesh has none");
     line.text("--normal-map", settings.load.normalMap, "IMAGE",
               "tangent-space normal map (+Y up; PNG, JPEG, WebP) for materials that have none");
     if (!line.parse(argc, argv)) return;
+    if (projection == projectionName(ProjectionKind::Plain)) settings.projection = kPlainProjection;
 
     const PrecomputeReport result = runPrecompute(settings);
     if (line.common().json != "-") {

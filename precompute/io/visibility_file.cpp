@@ -10,6 +10,7 @@
 #include "precompute/base/error.h"
 #include "precompute/io/exr_conventions.h"
 #include "precompute/io/exr_file.h"
+#include "precompute/io/projection_attributes.h"
 
 namespace prt {
 namespace {
@@ -101,6 +102,12 @@ size_t findPart(const ExrReader& reader, const std::string& name, const std::str
     throw InputError(path, fmt::format("has no part \"{}\"", name), "the file is damaged; make it again");
 }
 
+std::map<std::string, std::string> withProjection(std::map<std::string, std::string> attributes,
+                                                  const Projection& projection) {
+    setProjection(projection, attributes);
+    return attributes;
+}
+
 }  // namespace
 
 const char* pointDomainName(PointDomain domain) { return domain == PointDomain::Texel ? "texel" : "vertex"; }
@@ -140,7 +147,8 @@ void writeVisibilityFile(const std::string& path, const VisibilityMap& map) {
     ExrPartOut part;
     part.width = map.grid.width;
     part.height = map.grid.height;
-    part.attributes = conventionAttributes("visibility", map.shOrder, map.attributes);
+    part.attributes =
+        conventionAttributes("visibility", map.shOrder, withProjection(map.attributes, map.projection));
     setDomain(map.grid, part.attributes);
     addInterleaved(part.channels, indexedNames("V", coefficients), ExrType::Float, values.data(), part.width,
                    size_t(coefficients));
@@ -155,6 +163,7 @@ VisibilityMap readVisibilityFile(const std::string& path) {
     const ExrPartInfo& part = reader.parts().at(0);
     VisibilityMap map;
     map.attributes = checkConventions(part.attributes, "visibility", path);
+    map.projection = takeProjection(map.attributes, path);
     map.shOrder = requireInt(part.attributes, "shOrder", 1, kMaxFileShOrder, path);
     map.grid = readGrid(part, path);
     const int coefficients = map.shOrder * map.shOrder;
@@ -201,7 +210,8 @@ void writePcaFile(const std::string& path, const PcaMap& map) {
     weightPart.name = "weights";
     weightPart.width = map.grid.width;
     weightPart.height = map.grid.height;
-    weightPart.attributes = conventionAttributes("pca", map.shOrder, map.attributes);
+    weightPart.attributes =
+        conventionAttributes("pca", map.shOrder, withProjection(map.attributes, map.projection));
     weightPart.attributes.ints["componentCount"] = map.components;
     weightPart.attributes.floatVectors["variance"] = map.variance;
     setDomain(map.grid, weightPart.attributes);
@@ -224,6 +234,7 @@ PcaMap readPcaFile(const std::string& path) {
     const ExrPartInfo& basis = reader.parts()[basisPart];
     PcaMap map;
     map.attributes = checkConventions(part.attributes, "pca", path);
+    map.projection = takeProjection(map.attributes, path);
     map.shOrder = requireInt(part.attributes, "shOrder", 1, kMaxFileShOrder, path);
     const int coefficients = map.shOrder * map.shOrder;
     map.components = requireInt(part.attributes, "componentCount", 1, coefficients, path);

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "precompute/math/irradiance_weight.h"
 #include "precompute/math/vec.h"
 
 namespace prt {
@@ -40,12 +41,12 @@ PointGrid vertexGrid(size_t vertexCount);
 struct VisibilityMap {
     PointGrid grid;
     int shOrder = 0;
-    std::vector<float> coefficients;  ///< [count×n²]
-    std::vector<Validity> validity;   ///< [count]
-    std::vector<float> ao;            ///< [count] cosine-weighted, 1 = open
-    std::vector<Vec3f> normals;       ///< [count] geometric, world
-    std::map<std::string, std::string>
-        attributes;  ///< projection kind and parameters, written as EXR string attributes
+    std::vector<float> coefficients;                ///< [count×n²]
+    std::vector<Validity> validity;                 ///< [count]
+    std::vector<float> ao;                          ///< [count] cosine-weighted, 1 = open
+    std::vector<Vec3f> normals;                     ///< [count] geometric, world
+    Projection projection = kPlainProjection;       ///< how the coefficients were made
+    std::map<std::string, std::string> attributes;  ///< any more, written as EXR string attributes
 };
 
 /// Channels V.00…V.NN (zero-padded shIndex), ao, normal.X/Y/Z (float), validity (uint); ZIP, scanlines.
@@ -60,10 +61,11 @@ struct PcaMap {
     PointGrid grid;
     int shOrder = 0;
     int components = 0;
-    std::vector<float> mean;      ///< [n²]
-    std::vector<float> basis;     ///< [M×n²], rows orthonormal
-    std::vector<float> weights;   ///< [count×M]
-    std::vector<float> variance;  ///< [M] eigenvalues of the covariance, falling
+    std::vector<float> mean;                   ///< [n²]
+    std::vector<float> basis;                  ///< [M×n²], rows orthonormal
+    std::vector<float> weights;                ///< [count×M]
+    std::vector<float> variance;               ///< [M] eigenvalues of the covariance, falling
+    Projection projection = kPlainProjection;  ///< how the compressed coefficients were made
     std::map<std::string, std::string> attributes;
 };
 void writePcaFile(const std::string& path, const PcaMap& map);

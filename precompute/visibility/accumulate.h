@@ -1,18 +1,51 @@
-// The inner loop of projection: sums of rows of a table.
+// The inner loops of projection: sums of rows of a table. Additions and multiplications only, never fused and
+// in a fixed order, so the same bits on every machine.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
+#include <vector>
 
 namespace prt {
 
 /// Row length of a table for so many columns: the next multiple of 4.
 constexpr size_t paddedColumns(size_t columns) { return (columns + 3) / 4 * 4; }
 
-/// sum[c] += Σ_j table[rows[j]·stride + c], added in the order of j: only additions, so the same bits on
-/// every machine and for any grouping of calls by rows.
+/// sum[c] += Σ_j table[rows[j]·stride + c], added in the order of j.
 /// @param stride  floats per row, a multiple of 4
 /// @param sum     [stride]
 void addTableRows(const float* table, size_t stride, const uint16_t* rows, size_t rowCount, float* sum);
+
+/// sum[c] += Σ_j weights[j] · table[rows[j]·stride + c], added in the order of j.
+/// @param weights  [rowCount]
+void addWeightedTableRows(const float* table, size_t stride, const uint16_t* rows, const float* weights,
+                          size_t rowCount, float* sum);
+
+/// A function of cosines, tabulated.
+class CosineTable {
+  public:
+    /// @param steps  intervals of [−1, 1], values between are interpolated linearly
+    template <class Function>
+    CosineTable(int steps, const Function& function) : steps_(steps) {
+        for (int k = 0; k <= steps; ++k) values_.push_back(float(function(2.0 * k / steps - 1)));
+        values_.push_back(values_.back());
+    }
+    int steps() const { return steps_; }
+    const float* values() const { return values_.data(); }
+
+  private:
+    int steps_;
+    std::vector<float> values_;  // one more than the steps have ends, so that 1 needs no case of its own
+};
+
+/// Unit directions as a structure of arrays.
+struct DirectionColumns {
+    const float *x, *y, *z;
+};
+
+/// cosines[j] = n·ω_rows[j], clamped to [−1, 1], and weights[j] = f(cosines[j]).
+/// @param normal  [3]
+void weighRows(const DirectionColumns& directions, const float* normal, const CosineTable& f,
+               const uint16_t* rows, size_t rowCount, float* cosines, float* weights);
 
 }  // namespace prt

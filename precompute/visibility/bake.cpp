@@ -209,6 +209,10 @@ BakeResult bakeTexelVisibility(const RayCaster& caster, const TexelSurface& surf
     items.points = texels.points;
     items.firstPoint = texels.firstPoint;
     items.shareEnd = texels.shareEnd;
+    std::vector<Vec3f> normals(count);
+    std::transform(surface.points.begin(), surface.points.end(), normals.begin(),
+                   [](const SurfacePoint& point) { return point.normal; });
+    items.normals = normals;
     return bakeItems(caster, items, options, "points");
 }
 
@@ -268,11 +272,14 @@ BakeResult bakeVertexVisibility(const RayCaster& caster, const VertexPoints& ver
             shareEnd[p] = ends.next(double(vertices.share[p]));
     }
     first.push_back(uint32_t(vertices.points.size()));
+    std::vector<Vec3f> normals(owner.size());
+    for (size_t i = 0; i < owner.size(); ++i) normals[i] = vertices.normals[owner[i]];
 
     BakeItems items;
     items.points = vertices.points;
     items.firstPoint = first;
     items.shareEnd = shareEnd;
+    items.normals = normals;
     const BakeResult baked = bakeItems(caster, items, options, "vertices");
 
     BakeResult result;

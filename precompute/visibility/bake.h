@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "precompute/math/irradiance_weight.h"
 #include "precompute/mesh/texel_raster.h"
 #include "precompute/rays/ray_caster.h"
 
@@ -16,6 +17,7 @@ inline constexpr int kMaxBakeRays = 262144;
 struct BakeOptions {
     int shOrder = 6;  ///< 1..kMaxBundleShOrder
     int rays = 1024;  ///< 1..kMaxBakeRays over the whole sphere; those above a point's horizon are traced
+    Projection projection;   ///< weighted for irradiance, or plain
     bool findInside = true;  ///< classify points inside geometry (most hits are back faces)
     /// [triangles] or empty: non-zero where both sides are a proper outside (a curtain, a leaf), so that
     /// meeting the back does not mean to be inside
@@ -23,7 +25,9 @@ struct BakeOptions {
 };
 
 struct BakeResult {
-    std::vector<float> coefficients;  ///< [points×n²] world space, V = 0 below the geometric horizon
+    /// [points×n²] world space, V = 0 below the geometric horizon. Plain: of V. Weighted for irradiance: the
+    /// expansion that irradiance cannot tell from V; far below the horizon it is not V
+    std::vector<float> coefficients;
     std::vector<float> ao;  ///< [points] (1/π)∫V max(0,n·ω), normalised so that an open point has exactly 1
     std::vector<uint8_t> inside;  ///< [points] 1: most rays that hit anything hit the back of a face
     /// More than half of the points looked inside: the winding is inverted or inconsistent, and `inside` was
@@ -36,7 +40,9 @@ struct BakeResult {
 /// Visibility at points, by one set of world-fixed directions (spherical Fibonacci) shared by all points;
 /// blocks of neighbouring points take one direction at a time. Same bits for any number of threads, and for a
 /// point whatever the other points are.
-///   v_i = (4π/N) Σ_k V(ω_k) Y_i(ω_k)
+///   plain: v_i = (4π/N) Σ_k V(ω_k) Y_i(ω_k)
+///   weighted: b_i = (4π/N) Σ_k w(ω_k·n) V(ω_k) Y_i(ω_k), and v from b and the ambient occlusion by
+///   IrradianceProjection about the geometric normal n
 /// @throws UsageError   an option out of range
 /// @throws Interrupted
 /// @source [IwanickiSloan2012, Sec. 3]
@@ -46,7 +52,8 @@ BakeResult bakeVisibility(const RayCaster& caster, std::span<const SurfacePoint>
 /// As bakeVisibility, one result per point of the surface. A texel whose lookups stay on its chart, with
 /// nothing on or in that surface, is its point, to the bit. Others stand for their parts (on a chart's border
 /// the point would be one that a neighbouring surface touches), less those inside geometry while any is not;
-/// the directions are dealt to the parts by share, so the cost is that of one point.
+/// the directions are dealt to the parts by share, so the cost is that of one point. Each part keeps its own
+/// horizon; weighted projection is about the texel's normal.
 /// @throws UsageError, Interrupted
 BakeResult bakeTexelVisibility(const RayCaster& caster, const TexelSurface& surface,
                                const BakeOptions& options);
@@ -69,7 +76,7 @@ inline constexpr int kMaxSubPoints = 32;
 /// area
 ///               has no points, and bakes to zeros
 VertexPoints makeVertexPoints(const Scene& scene);
-/// As bakeVisibility, one result per vertex.
+/// As bakeVisibility, one result per vertex; weighted projection is about the vertex's normal.
 BakeResult bakeVertexVisibility(const RayCaster& caster, const VertexPoints& vertices,
                                 const BakeOptions& options);
 

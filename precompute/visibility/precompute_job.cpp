@@ -10,6 +10,7 @@
 #include "precompute/base/parallel.h"
 #include "precompute/io/bundle.h"
 #include "precompute/io/glb.h"
+#include "precompute/io/projection_attributes.h"
 #include "precompute/math/sh.h"
 #include "precompute/visibility/bake.h"
 #include "precompute/visibility/fill.h"
@@ -48,7 +49,8 @@ std::string commandLine(const PrecomputeSettings& settings) {
     std::string line =
         fmt::format("prt precompute {} -o {}", quoted(settings.meshPath), quoted(settings.bundlePath));
     line += settings.perVertex ? std::string(" --per-vertex") : fmt::format(" --texels {}", settings.texels);
-    line += fmt::format(" --order {} --rays {}", settings.shOrder, settings.rays);
+    line += fmt::format(" --order {} --rays {} --projection {}", settings.shOrder, settings.rays,
+                        projectionName(settings.projection.kind));
     const LoadMeshOptions defaults;
     if (settings.load.uvScale != defaults.uvScale)
         line += fmt::format(" --uv-scale {}", settings.load.uvScale);
@@ -102,6 +104,7 @@ Baked bake(const RayCaster& caster, const Scene& scene, const PrecomputeSettings
     BakeOptions options;
     options.shOrder = settings.shOrder;
     options.rays = settings.rays;
+    options.projection = settings.projection;
     options.doubleSided = doubleSided;
     Baked baked;
     if (settings.perVertex) {
@@ -117,8 +120,8 @@ Baked bake(const RayCaster& caster, const Scene& scene, const PrecomputeSettings
         baked.result = bakeTexelVisibility(caster, surface, options);
         baked.map = fillTexels(surface, baked.result, settings.shOrder);
     }
-    baked.map.attributes = {{"projection", "plain"},
-                            {"directionSet", "spherical-fibonacci"},
+    baked.map.projection = settings.projection;
+    baked.map.attributes = {{"directionSet", "spherical-fibonacci"},
                             {"rays", std::to_string(settings.rays)},
                             {"embreeIsa", caster.instructionSet()}};
     return baked;

@@ -18,6 +18,7 @@ struct PrecomputeSettings {
     int texels = 512;  ///< edge of the atlas
     int shOrder = 6;
     int rays = 1024;
+    Projection projection;  ///< weighted for irradiance, or plain
     LoadMeshOptions load;
 };
 

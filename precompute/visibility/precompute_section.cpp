@@ -3,6 +3,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "precompute/io/projection_attributes.h"
+
 namespace prt {
 
 std::string precomputeSection(const PrecomputeSettings& settings, const PrecomputeReport& report) {
@@ -15,7 +17,11 @@ std::string precomputeSection(const PrecomputeSettings& settings, const Precompu
     given["rays"] = settings.rays;
     given["uv_scale"] = settings.load.uvScale;
     if (!settings.load.normalMap.empty()) given["normal_map"] = settings.load.normalMap;
-    given["projection"] = "plain";
+    given["projection"] = projectionName(settings.projection.kind);
+    if (settings.projection.kind == ProjectionKind::Irradiance) {
+        given["projection_cone_deg"] = settings.projection.weight.coneDegrees;
+        given["projection_floor"] = settings.projection.weight.floor;
+    }
     given["direction_set"] = "spherical-fibonacci";
 
     auto& found = section["statistics"];

@@ -1,4 +1,5 @@
-// Visibility by ray casting and its projection [IwanickiSloan2012, Sec. 3]; directions from [Keinert2015];
+// Visibility by ray casting and its projection [IwanickiSloan2012, Sec. 3], plain or by least squares of what
+// irradiance sees; directions from [Keinert2015];
 // Morton order [Morton1966].
 #include "precompute/visibility/trace_blocks.h"
 
@@ -11,12 +12,14 @@
 #include <limits>
 #include <memory>
 #include <numbers>
+#include <optional>
 
 #include "precompute/base/check.h"
 #include "precompute/base/error.h"
 #include "precompute/base/log.h"
 #include "precompute/base/parallel.h"
 #include "precompute/math/directions.h"
+#include "precompute/math/irradiance_projection.h"
 #include "precompute/math/sh.h"
 #include "precompute/visibility/accumulate.h"
 
@@ -31,19 +34,38 @@ constexpr size_t kListStride = kChunk + 32;
 constexpr int kInsideDirections = 128;   // over the sphere; half of them lie above the horizon
 constexpr float kInsideAoLimit = 0.35f;  // more open points are not examined: an inside point is nearly dark
 
+// Steps of the table of weights: interpolation errs by less than 1e-6.
+constexpr int kWeightSteps = 1024;
+
 // The directions, and their basis functions as a table of padded rows.
 struct DirectionTable {
     std::vector<Vec3f> directions;
+    std::vector<float> x, y, z;
     std::vector<float> basis;  // [N × stride]
     size_t stride = 0;
 
     DirectionTable(int rays, int shOrder) : directions(sphericalFibonacci(rays)) {
         const size_t columns = size_t(shCount(shOrder));
         stride = paddedColumns(columns);
+        for (const Vec3f& direction : directions) {
+            x.push_back(direction.x());
+            y.push_back(direction.y());
+            z.push_back(direction.z());
+        }
         basis.assign(directions.size() * stride, 0.0f);
         for (size_t k = 0; k < directions.size(); ++k)
             evalSh(shOrder, directions[k], std::span(&basis[k * stride], columns));
     }
+};
+
+// What projection weighted for irradiance needs; nothing where projection is plain.
+struct Weighting {
+    CosineTable weight;
+    IrradianceProjection projection;
+
+    Weighting(int shOrder, const IrradianceWeight& parameters)
+        : weight(kWeightSteps, [&](double cosine) { return irradianceWeight(cosine, parameters); }),
+          projection(shOrder, parameters) {}
 };
 
 uint32_t hash32(uint32_t x) {  // finaliser of MurmurHash3
@@ -65,10 +87,12 @@ struct NormalCone {
 // Everything one thread needs while it traces a block.
 class BlockTracer {
   public:
-    BlockTracer(const RayCaster& caster, const BakeItems& items, const DirectionTable& table)
+    BlockTracer(const RayCaster& caster, const BakeItems& items, const DirectionTable& table,
+                const Weighting* weighting)
         : caster_(caster),
           items_(items),
           table_(table),
+          weighting_(weighting),
           lists_(kBlock * kListStride),
           sums_(kBlock * table.stride) {}
 
@@ -82,16 +106,60 @@ class BlockTracer {
             listCounts_.fill(0);
             for (size_t k = start; k < end; ++k)
                 if (cone_.mayFace(table_.directions[k])) rays += traceDirection(k, uint16_t(k - start));
-            for (size_t i = 0; i < block.size(); ++i)
-                addTableRows(&table_.basis[start * table_.stride], table_.stride, &lists_[i * kListStride],
-                             listCounts_[i], &sums_[i * table_.stride]);
+            for (size_t i = 0; i < block.size(); ++i) project(i, start);
         }
         return rays;
     }
-    std::span<const float> sum(size_t i) const { return {&sums_[i * table_.stride], table_.stride}; }
+    /// @param out  [n²] the expansion of item i of the block
+    void expansion(size_t i, std::span<float> out) const {
+        const float sampleSr = float(4 * std::numbers::pi / double(table_.directions.size()));
+        for (size_t c = 0; c < out.size(); ++c) out[c] = sums_[i * table_.stride + c] * sampleSr;
+        const Vec3f normal = itemNormal(i);
+        if (weighting_ && normal != Vec3f::Zero())
+            weighting_->projection.solve(normal, out, openness(i) * float(std::numbers::pi), out);
+    }
     float ao(size_t i) const { return openSum_[i] > 0 ? seenSum_[i] / openSum_[i] : 0.0f; }
 
   private:
+    bool isSinglePoint(size_t i) const {
+        const uint32_t item = block_[i];
+        return items_.firstPoint.empty() || items_.firstPoint[item + 1] == items_.firstPoint[item] + 1;
+    }
+    // Zero where the item has no points.
+    Vec3f itemNormal(size_t i) const {
+        const uint32_t item = block_[i];
+        if (!items_.firstPoint.empty() && items_.firstPoint[item + 1] == items_.firstPoint[item])
+            return Vec3f::Zero();
+        return items_.normals.empty() ? items_.points[item].normal : items_.normals[item];
+    }
+    // What is seen of the cosine about the item's normal, 1 where nothing blocks it: the ambient occlusion,
+    // but for parts of other normals.
+    float openness(size_t i) const {
+        const Vec3f normal = itemNormal(i);
+        if (isSinglePoint(i) && selectedNormal(i) == normal) return ao(i);
+        float open = 0;
+        for (const Vec3f& direction : table_.directions) open += std::max(0.0f, normal.dot(direction));
+        return open > 0 ? seenAboutNormal_[i] / open : 0.0f;
+    }
+    Vec3f selectedNormal(size_t i) const { return {normalX_[i], normalY_[i], normalZ_[i]}; }
+
+    // Adds the visible directions of the chunk that starts at direction `start`.
+    void project(size_t i, size_t start) {
+        const float* basis = &table_.basis[start * table_.stride];
+        const uint16_t* rows = &lists_[i * kListStride];
+        float* sum = &sums_[i * table_.stride];
+        if (!weighting_) {
+            addTableRows(basis, table_.stride, rows, listCounts_[i], sum);
+            return;
+        }
+        const Vec3f normal = itemNormal(i);
+        weighRows({&table_.x[start], &table_.y[start], &table_.z[start]}, normal.data(), weighting_->weight,
+                  rows, listCounts_[i], cosines_.data(), weights_.data());
+        addWeightedTableRows(basis, table_.stride, rows, weights_.data(), listCounts_[i], sum);
+        if (isSinglePoint(i) && selectedNormal(i) == normal) return;
+        for (size_t j = 0; j < listCounts_[i]; ++j) seenAboutNormal_[i] += std::max(0.0f, cosines_[j]);
+    }
+
     void select(size_t i, uint32_t point) {
         const SurfacePoint& p = items_.points[point];
         normalX_[i] = p.normal.x();
@@ -105,6 +173,7 @@ class BlockTracer {
         std::fill(sums_.begin(), sums_.end(), 0.0f);
         seenSum_.fill(0);
         openSum_.fill(0);
+        seenAboutNormal_.fill(0);
         offset_.clear();
         many_.clear();
         Vec3f axis = Vec3f::Zero();
@@ -171,6 +240,7 @@ class BlockTracer {
     const RayCaster& caster_;
     const BakeItems& items_;
     const DirectionTable& table_;
+    const Weighting* weighting_;
     std::span<const uint32_t> block_;
     NormalCone cone_;
     std::vector<Vec3f> offset_;    // ray origins of all sub-points of the block
@@ -179,6 +249,8 @@ class BlockTracer {
     std::vector<float> sums_;      // [kBlock × stride]
     std::array<uint32_t, kBlock> firstOffset_{}, offsetStart_{};
     std::array<float, kBlock> normalX_{}, normalY_{}, normalZ_{}, seenSum_{}, openSum_{};
+    std::array<float, kBlock> seenAboutNormal_{};  // of items of several normals
+    std::array<float, kChunk> cosines_, weights_;  // of one item's visible directions
     std::array<Vec3f, kBlock> origin_, rayOrigin_;
     std::array<uint16_t, kBlock> facing_{}, listCounts_{};
     std::array<uint8_t, kBlock> blocked_{};
@@ -273,6 +345,9 @@ BakeResult bakeItems(const RayCaster& caster, const BakeItems& items, const Bake
     if (options.rays < 1 || options.rays > kMaxBakeRays)
         throw UsageError("rays", fmt::format("{} is out of range", options.rays),
                          fmt::format("choose 1 to {}", kMaxBakeRays));
+    PRT_CHECK(items.normals.empty() || items.normals.size() == items.count());
+    PRT_CHECK(items.firstPoint.empty() || !items.normals.empty() ||
+              options.projection.kind == ProjectionKind::Plain);
     PRT_CHECK(options.doubleSided.empty() || options.doubleSided.size() == caster.triangleCount());
 
     const size_t count = items.count(), columns = size_t(shCount(options.shOrder));
@@ -283,22 +358,24 @@ BakeResult bakeItems(const RayCaster& caster, const BakeItems& items, const Bake
 
     const Stopwatch watch;
     const DirectionTable table(options.rays, options.shOrder);
+    std::optional<Weighting> weighting;
+    if (options.projection.kind == ProjectionKind::Irradiance)
+        weighting.emplace(options.shOrder, options.projection.weight);
     std::vector<Vec3f> positions(count, Vec3f::Zero());
     for (size_t i = 0; i < count; ++i) {
         const size_t point = items.firstPoint.empty() ? i : items.firstPoint[i];
         if (point < items.points.size()) positions[i] = items.points[point].position;
     }
     const std::vector<uint32_t> order = mortonOrder(positions);
-    const float sampleSr = float(4 * std::numbers::pi / options.rays);
     std::atomic<uint64_t> rays{0};
     Progress progress("tracing", count, unit);
     parallelFor(count, kBlock, [&](size_t begin, size_t end) {
         const std::span block(&order[begin], end - begin);
-        const auto tracer = std::make_unique<BlockTracer>(caster, items, table);
+        const auto tracer =
+            std::make_unique<BlockTracer>(caster, items, table, weighting ? &*weighting : nullptr);
         rays += tracer->trace(block);
         for (size_t i = 0; i < block.size(); ++i) {
-            float* out = &result.coefficients[size_t(block[i]) * columns];
-            for (size_t c = 0; c < columns; ++c) out[c] = tracer->sum(i)[c] * sampleSr;
+            tracer->expansion(i, {&result.coefficients[size_t(block[i]) * columns], columns});
             result.ao[block[i]] = tracer->ao(i);
         }
         progress.advance(block.size());

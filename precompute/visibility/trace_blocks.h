@@ -15,6 +15,9 @@ struct BakeItems {
     std::span<const uint32_t> firstPoint;  ///< [items + 1], or empty: item i is point i
     /// [points] upper end of the sub-point's share of [0, 2^32); empty when firstPoint is
     std::span<const uint32_t> shareEnd;
+    /// [items] unit, what projection weighted for irradiance turns about; empty: items are points, each its
+    /// own
+    std::span<const Vec3f> normals;
     size_t count() const { return firstPoint.empty() ? points.size() : firstPoint.size() - 1; }
 };
 

@@ -2,7 +2,6 @@
 #include "compress/irradiance_weights.h"
 
 #include <Eigen/Core>
-#include <Eigen/Eigenvalues>
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
@@ -12,27 +11,10 @@
 
 #include "precompute/base/parallel.h"
 #include "precompute/math/sh.h"
+#include "tests/math/slow_irradiance_weight.h"
 
 namespace prt {
 namespace {
-
-// w by the definition: rings of shading normals over the cap, midpoints in height and azimuth.
-double slowWeight(const Vec3d& normal, const Vec3d& direction, int rings = 40, int azimuths = 80) {
-    const Vec3d n = normal.normalized();
-    const Vec3d t = n.unitOrthogonal(), b = n.cross(t);
-    const double low = std::cos(kIrradianceConeDegrees * M_PI / 180);
-    double sum = 0, largest = 0;
-    for (int i = 0; i < rings; ++i) {
-        const double z = low + (1 - low) * (i + 0.5) / rings, r = std::sqrt(1 - z * z);
-        largest += z * z;
-        for (int j = 0; j < azimuths; ++j) {
-            const double phi = 2 * M_PI * (j + 0.5) / azimuths;
-            const Vec3d shading = z * n + r * std::cos(phi) * t + r * std::sin(phi) * b;
-            sum += std::pow(std::max(0.0, shading.dot(direction)), 2);
-        }
-    }
-    return sum / (rings * azimuths) + kIrradianceFloor * largest / rings;
-}
 
 // Rows of visibility: caps that block, cut at the horizon of the normal.
 struct Points {
@@ -77,51 +59,10 @@ float largestDifference(const std::vector<float>& a, const std::vector<float>& b
 using RowMatrixXf = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 Eigen::MatrixXd metricOf(const Vec3f& normal, int shOrder) {
-    const std::vector<float> values = irradianceMetric(normal, shOrder);
     const int dimension = shCount(shOrder);
+    std::vector<float> values(size_t(dimension) * size_t(dimension));
+    IrradianceMetric(shOrder).evaluate(normal, values);
     return Eigen::Map<const RowMatrixXf>(values.data(), dimension, dimension).cast<double>();
-}
-
-TEST(IrradianceWeight, ZonalSeriesConvergesToTheDefinition) {
-    const std::vector<double> zonal = irradianceWeightZonal(kMaxShOrder);
-    std::vector<double> y(size_t(shCount(kMaxShOrder)));
-    for (double degrees = 0; degrees <= 180; degrees += 7.5) {
-        const double angle = degrees * M_PI / 180;
-        const Vec3d direction(std::sin(angle), 0, std::cos(angle));
-        evalSh(kMaxShOrder, direction, y);
-        double value = 0;
-        for (int l = 0; l < kMaxShOrder; ++l) value += zonal[size_t(l)] * y[size_t(shIndex(l, 0))];
-        EXPECT_NEAR(value, slowWeight(Vec3d(0, 0, 1), direction), 5e-4) << degrees << " degrees";
-    }
-}
-
-TEST(IrradianceWeight, MetricEqualsQuadratureOfTheDefinition) {
-    const int shOrder = 4, dimension = shCount(shOrder);
-    std::vector<double> y(static_cast<size_t>(dimension));
-    for (const Vec3f& normal : {Vec3f(0, 0, 1), Vec3f(0, -1, 0), Vec3f(0.6f, -0.48f, 0.64f)}) {
-        Eigen::MatrixXd expected = Eigen::MatrixXd::Zero(dimension, dimension);
-        for (const SphereNode& node : sphereQuadrature(47)) {
-            evalSh(shOrder, node.direction, y);
-            const Eigen::Map<const Eigen::VectorXd> values(y.data(), dimension);
-            expected += node.weightSr * slowWeight(normal.cast<double>(), node.direction) * values *
-                        values.transpose();
-        }
-        EXPECT_LT((metricOf(normal, shOrder) - expected).cwiseAbs().maxCoeff(), 3e-4);
-    }
-}
-
-TEST(IrradianceWeight, MetricIsSymmetricAndBoundedByTheWeight) {
-    const double cosine = std::cos(kIrradianceConeDegrees * M_PI / 180);
-    const double largest = (1 + cosine + cosine * cosine) / 3;
-    for (const int shOrder : {1, 2, 3, 6, kMaxBundleShOrder})
-        for (const Vec3f& normal : {Vec3f(0, 1, 0), Vec3f(-0.36f, 0.48f, -0.8f)}) {
-            const Eigen::MatrixXd metric = metricOf(normal, shOrder);
-            EXPECT_EQ(metric, metric.transpose());
-            const Eigen::VectorXd values =
-                Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(metric).eigenvalues();
-            EXPECT_GT(values.minCoeff(), kIrradianceFloor * largest - 1e-5);
-            EXPECT_LT(values.maxCoeff(), (1 + kIrradianceFloor) * largest + 1e-5);
-        }
 }
 
 TEST(IrradianceWeights, SolveTheLeastSquaresOfTheDirectQuadrature) {
@@ -139,7 +80,7 @@ TEST(IrradianceWeights, SolveTheLeastSquaresOfTheDirectQuadrature) {
         Eigen::MatrixXd system(Eigen::Index(nodes.size()), dimension);
         for (size_t k = 0; k < nodes.size(); ++k) {
             evalSh(shOrder, nodes[k].direction, y);
-            const double w = slowWeight(points.normals[i].cast<double>(), nodes[k].direction);
+            const double w = slow::irradianceWeight(points.normals[i].cast<double>(), nodes[k].direction);
             system.row(Eigen::Index(k)) =
                 std::sqrt(w * nodes[k].weightSr) * Eigen::Map<const Eigen::RowVectorXd>(y.data(), dimension);
         }
@@ -276,7 +217,6 @@ TEST(IrradianceWeightsDeath, SizesThatDoNotFit) {
     const PcaResult pca = computePca(points.rows, {}, 9, 3);
     EXPECT_DEATH(projectPcaForIrradiance(pca, points.rows, std::span(points.normals).first(19), 3), "rows");
     EXPECT_DEATH(projectPcaForIrradiance(pca, points.rows, points.normals, 4), "dimension");
-    EXPECT_DEATH(irradianceMetric(Vec3f(0, 0, 1), kMaxBundleShOrder + 1), "shOrder");
 }
 
 }  // namespace

@@ -38,7 +38,8 @@ VisibilityMap testVisibility(int shOrder, unsigned seed, int width = 24, int hei
             map.coefficients.push_back(map.validity[i] == Validity::Empty ? 0.0f
                                                                           : normal(random) / float(k + 1));
     }
-    map.attributes = {{"projection", "plain"}};
+    map.projection = kPlainProjection;
+    map.attributes = {{"rays", "1024"}};
     return map;
 }
 
@@ -127,7 +128,8 @@ TEST_P(JobsWeights, CompressWritesWhatTheAlgorithmSays) {
     EXPECT_EQ(read.mean, pca.mean);
     EXPECT_EQ(read.basis, pca.basis);
     EXPECT_EQ(read.variance, pca.variance);
-    EXPECT_EQ(read.attributes.at("projection"), "plain");
+    EXPECT_EQ(read.projection, kPlainProjection);
+    EXPECT_EQ(read.attributes.at("rays"), "1024");
     EXPECT_EQ(read.attributes.at("weightsFit"), GetParam());
     EXPECT_EQ(read.attributes.count("weightsFloor"), isPlain ? 0u : 1u);
     for (size_t i = 0; i < map.grid.count; ++i)

@@ -12,6 +12,7 @@
 #include "precompute/base/error.h"
 #include "precompute/base/parallel.h"
 #include "precompute/io/exr_file.h"
+#include "precompute/io/projection_attributes.h"
 #include "precompute/io/table_file.h"
 #include "precompute/io/visibility_file.h"
 #include "tests/base/small_disk.h"
@@ -120,17 +121,76 @@ TEST(Visibility, HeaderCarriesTheConventions) {
     EXPECT_EQ(part.channels.size(), 9u);
 }
 
+// Projections survive the files; attributes as they stand in the header.
+TEST(Projection, RoundTripsThroughBothFiles) {
+    TemporaryDirectory directory;
+    for (const Projection& projection :
+         {kPlainProjection, Projection{}, Projection{ProjectionKind::Irradiance, {1.0 / 3, 0}}}) {
+        VisibilityMap map = randomVisibility(vertexGrid(5), 2);
+        map.projection = projection;
+        writeVisibilityFile(directory.file("v.exr"), map);
+        const VisibilityMap back = readVisibilityFile(directory.file("v.exr"));
+        EXPECT_EQ(back.projection, projection);
+        EXPECT_EQ(back.attributes, map.attributes);
+        PcaMap pca = randomPca(vertexGrid(5), 2, 3);
+        pca.projection = projection;
+        writePcaFile(directory.file("p.exr"), pca);
+        EXPECT_EQ(readPcaFile(directory.file("p.exr")).projection, projection);
+        EXPECT_EQ(readPcaFile(directory.file("p.exr")).attributes, pca.attributes);
+    }
+}
+
+TEST(Projection, AttributesInTheHeader) {
+    std::map<std::string, std::string> attributes = {{"rays", "64"}, {"projectionFloor", "of another"}};
+    setProjection(kPlainProjection, attributes);
+    EXPECT_EQ(attributes, (std::map<std::string, std::string>{{"rays", "64"}, {"projection", "plain"}}));
+    setProjection({ProjectionKind::Irradiance, {35, 0.002}}, attributes);
+    EXPECT_EQ(attributes, (std::map<std::string, std::string>{{"rays", "64"},
+                                                              {"projection", "irradiance"},
+                                                              {"projectionConeDegrees", "35"},
+                                                              {"projectionFloor", "0.002"}}));
+}
+
+TEST(Projection, FilesWithoutOneArePlain) {
+    std::map<std::string, std::string> attributes = {{"rays", "64"}};
+    EXPECT_EQ(takeProjection(attributes, "v.exr"), kPlainProjection);
+    EXPECT_EQ(attributes, (std::map<std::string, std::string>{{"rays", "64"}}));
+}
+
+TEST(Projection, DamagedOnesAreRefused) {
+    using Attributes = std::map<std::string, std::string>;
+    const auto with = [](const char* kind, const char* cone, const char* floor) {
+        return Attributes{{"projection", kind}, {"projectionConeDegrees", cone}, {"projectionFloor", floor}};
+    };
+    for (Attributes attributes :
+         {Attributes{{"projection", ""}}, Attributes{{"projection", "cosine"}},
+          Attributes{{"projection", "irradiance"}},
+          Attributes{{"projection", "irradiance"}, {"projectionFloor", "0.1"}},
+          with("irradiance", "forty", "0.1"), with("irradiance", "40 ", "0.1"), with("irradiance", "", "0.1"),
+          with("irradiance", "40", "-0.1"), with("irradiance", "40", "1e999"),
+          with("irradiance", "nan", "0.1"), with("irradiance", "180", "0.1")}) {
+        try {
+            takeProjection(attributes, "dir/v.exr");
+            ADD_FAILURE() << "accepted";
+        } catch (const InputError& error) {
+            EXPECT_THAT(error.what(), testing::HasSubstr("dir/v.exr"));
+        }
+    }
+}
+
 TEST(Visibility, OwnAttributesNeverHideTheFilesOwn) {
     TemporaryDirectory directory;
     VisibilityMap map = randomVisibility(vertexGrid(5), 2);
     map.attributes["shConvention"] = "another";
     map.attributes["shOrder"] = "7";
     map.attributes["domain"] = "texel";
+    map.attributes["projection"] = "cosine";
     map.attributes["kept"] = "yes";
     writeVisibilityFile(directory.file("v.exr"), map);
     const VisibilityMap back = readVisibilityFile(directory.file("v.exr"));
     EXPECT_EQ(back.shOrder, 2);
     EXPECT_EQ(back.grid.domain, PointDomain::Vertex);
+    EXPECT_EQ(back.projection, kPlainProjection);
     EXPECT_EQ(back.attributes.at("kept"), "yes");
     EXPECT_FALSE(back.attributes.contains("shConvention"));
 }

@@ -27,7 +27,7 @@ inline VisibilityMap randomVisibility(const PointGrid& grid, int shOrder) {
         map.normals.emplace_back(normals[i * 3], normals[i * 3 + 1], normals[i * 3 + 2]);
         map.validity.push_back(Validity(i % size_t(kValidityCount)));
     }
-    map.attributes = {{"projection", "plain"}, {"rays", "1024"}, {"note", ""}};
+    map.attributes = {{"rays", "1024"}, {"note", ""}};
     return map;
 }
 
@@ -41,7 +41,7 @@ inline PcaMap randomPca(const PointGrid& grid, int shOrder, int components) {
     map.basis = randomFloats(coefficients * size_t(components), 2);
     map.weights = randomFloats(grid.count * size_t(components), 3);
     map.variance = randomFloats(size_t(components), 4);
-    map.attributes = {{"projection", "plain"}, {"metric", "plain least squares"}};
+    map.attributes = {{"metric", "plain least squares"}};
     return map;
 }
 

@@ -11,6 +11,7 @@
 #include "precompute/base/parallel.h"
 #include "precompute/math/clamped_cosine.h"
 #include "precompute/math/directions.h"
+#include "precompute/math/irradiance_projection.h"
 #include "precompute/math/sh.h"
 #include "precompute/math/sh_rotation.h"
 #include "tests/rays/shapes.h"
@@ -30,11 +31,13 @@ std::vector<SurfacePoint> pointsOn(const Mesh& mesh, size_t stride = 1) {
     return points;
 }
 
-BakeResult bakeMesh(const Mesh& mesh, std::span<const SurfacePoint> points, int shOrder, int rays) {
+BakeResult bakeMesh(const Mesh& mesh, std::span<const SurfacePoint> points, int shOrder, int rays,
+                    const Projection& projection = kPlainProjection) {
     const RayCaster caster(mesh.positions, mesh.indices);
     BakeOptions options;
     options.shOrder = shOrder;
     options.rays = rays;
+    options.projection = projection;
     return bakeVisibility(caster, points, options);
 }
 
@@ -265,26 +268,118 @@ TEST(Bake, BitsDoNotDependOnThreadsOrBlocks) {
             points.push_back({{float(i) * 0.07f - 1.4f, 0, float(j) * 0.07f - 1.4f}, {0, 1, 0}, 0});
     const std::vector<SurfacePoint> others = pointsOn(mesh);
     points.insert(points.end(), others.begin(), others.end());
-    setThreadCount(1);
-    const BakeResult one = bakeMesh(mesh, points, 5, 700);
-    setThreadCount(2);
-    const BakeResult two = bakeMesh(mesh, points, 5, 700);
-    setThreadCount(0);
-    EXPECT_EQ(one.coefficients, two.coefficients);
-    EXPECT_EQ(one.ao, two.ao);
-    EXPECT_EQ(one.inside, two.inside);
-    EXPECT_EQ(one.rays, two.rays);
+    for (const Projection& projection : {kPlainProjection, Projection{}}) {
+        setThreadCount(1);
+        const BakeResult one = bakeMesh(mesh, points, 5, 700, projection);
+        setThreadCount(2);
+        const BakeResult two = bakeMesh(mesh, points, 5, 700, projection);
+        setThreadCount(0);
+        EXPECT_EQ(one.coefficients, two.coefficients);
+        EXPECT_EQ(one.ao, two.ao);
+        EXPECT_EQ(one.inside, two.inside);
+        EXPECT_EQ(one.rays, two.rays);
 
-    std::vector<SurfacePoint> some;
-    for (size_t i = 0; i < points.size(); i += 37) some.push_back(points[points.size() - 1 - i]);
-    const BakeResult alone = bakeMesh(mesh, some, 5, 700);
-    for (size_t i = 0; i < some.size(); ++i) {
-        const size_t whole = points.size() - 1 - 37 * i;
-        EXPECT_EQ(alone.ao[i], one.ao[whole]);
-        EXPECT_EQ(alone.inside[i], one.inside[whole]);
-        EXPECT_TRUE(std::equal(&alone.coefficients[i * 25], &alone.coefficients[i * 25 + 25],
-                               &one.coefficients[whole * 25]));
+        std::vector<SurfacePoint> some;
+        for (size_t i = 0; i < points.size(); i += 37) some.push_back(points[points.size() - 1 - i]);
+        const BakeResult alone = bakeMesh(mesh, some, 5, 700, projection);
+        for (size_t i = 0; i < some.size(); ++i) {
+            const size_t whole = points.size() - 1 - 37 * i;
+            EXPECT_EQ(alone.ao[i], one.ao[whole]);
+            EXPECT_EQ(alone.inside[i], one.inside[whole]);
+            EXPECT_TRUE(std::equal(&alone.coefficients[i * 25], &alone.coefficients[i * 25 + 25],
+                                   &one.coefficients[whole * 25]));
+        }
     }
+}
+
+// b and E summed in double over the bake's own directions, then the projection under test elsewhere.
+TEST(Bake, WeightedForIrradianceMatchesBruteForce) {
+    const Mesh mesh = clutter();
+    const RayCaster caster(mesh.positions, mesh.indices);
+    const std::vector<SurfacePoint> points = pointsOn(mesh);
+    const int rays = 300;
+    const std::vector<Vec3f> directions = sphericalFibonacci(rays);
+    for (const IrradianceWeight& weight : {IrradianceWeight{}, IrradianceWeight{20, 0.05}})
+        for (const int shOrder : {1, 4, 7}) {
+            const size_t columns = size_t(shCount(shOrder));
+            const IrradianceProjection projection(shOrder, weight);
+            const BakeResult result =
+                bakeMesh(mesh, points, shOrder, rays, {ProjectionKind::Irradiance, weight});
+            const BakeResult plain = bakeMesh(mesh, points, shOrder, rays);
+            EXPECT_EQ(result.ao, plain.ao);
+            EXPECT_EQ(result.inside, plain.inside);
+            EXPECT_EQ(result.rays, plain.rays);
+            for (size_t i = 0; i < points.size(); ++i) {
+                std::vector<double> sum(columns, 0.0), basis(columns);
+                const Vec3d origin = caster.offsetOrigin(points[i].position, points[i].normal).cast<double>();
+                for (const Vec3f& direction : directions) {
+                    const double cosine = double(points[i].normal.dot(direction));
+                    if (!(cosine > 0) || slowlyBlocked(mesh, origin, direction.cast<double>())) continue;
+                    evalSh(shOrder, direction.cast<double>(), basis);
+                    for (size_t c = 0; c < columns; ++c)
+                        sum[c] += irradianceWeight(cosine, weight) * basis[c] * 4 * kPi / rays;
+                }
+                const std::vector<float> b(sum.begin(), sum.end());
+                std::vector<float> expected(columns);
+                projection.solve(points[i].normal, b, float(kPi) * result.ao[i], expected);
+                // Errors of b in float, amplified by up to the inverse of the floor.
+                for (size_t c = 0; c < columns; ++c)
+                    EXPECT_NEAR(result.coefficients[i * columns + c], expected[c], 1e-6 / weight.floor);
+                EXPECT_NEAR(
+                    whiteIrradiance({&result.coefficients[i * columns], columns}, shOrder, points[i].normal),
+                    kPi * double(result.ao[i]), 2e-5);
+            }
+        }
+}
+
+TEST(Bake, OpenSphereReceivesAllOfConstantLightAtEveryOrder) {
+    const Mesh mesh = shapes::sphere(1, {0, 0, 0}, 2);
+    const std::vector<SurfacePoint> points = pointsOn(mesh, 3);
+    for (const int rays : {64, 1024})
+        for (int shOrder = 1; shOrder <= 10; ++shOrder) {
+            const BakeResult result = bakeMesh(mesh, points, shOrder, rays, Projection{});
+            const size_t columns = size_t(shCount(shOrder));
+            for (size_t i = 0; i < points.size(); ++i)
+                EXPECT_NEAR(
+                    whiteIrradiance({&result.coefficients[i * columns], columns}, shOrder, points[i].normal),
+                    kPi, 1e-4 * kPi)
+                    << shOrder << " bands, " << rays << " rays";
+        }
+}
+
+// Tilted shading normals: within the cone weighted projection is nearer to the truth than plain.
+TEST(Bake, WeightedForIrradianceBeatsPlainOnAnOpenSphere) {
+    const Mesh mesh = shapes::sphere(1, {0, 0, 0}, 2);
+    const std::vector<SurfacePoint> points = pointsOn(mesh, 3);
+    for (const int shOrder : {3, 4, 6}) {
+        const size_t columns = size_t(shCount(shOrder));
+        const BakeResult weighted = bakeMesh(mesh, points, shOrder, 4096, Projection{});
+        for (const double tiltDeg : {0.0, 10.0, 20.0, 35.0}) {
+            const double exact = kPi / 2 * (1 + std::cos(tiltDeg * kPi / 180));
+            for (size_t i = 0; i < points.size(); ++i)
+                EXPECT_NEAR(whiteIrradiance({&weighted.coefficients[i * columns], columns}, shOrder,
+                                            tilted(points[i].normal, tiltDeg, double(i))),
+                            exact, (tiltDeg > 20 ? 0.025 : 0.01) * kPi)
+                    << shOrder << " bands, " << tiltDeg << " degrees";
+        }
+    }
+}
+
+TEST(Bake, ConvexPolyhedraDoNotDependOnScaleOrPosition) {
+    const auto bakeAt = [](float scale, const Vec3f& offset) {
+        Mesh mesh = shapes::box({-1, -1.5f, -2}, {1, 1.5f, 2});
+        for (Vec3f& p : mesh.positions) p = scale * p + offset;
+        return bakeMesh(mesh, pointsOn(mesh), 6, 512, Projection{});
+    };
+    const BakeResult reference = bakeAt(1, {0, 0, 0});
+    for (const float scale : {1e-3f, 1.0f, 4096.0f, 1e6f})
+        for (const Vec3f& offset : {Vec3f(0, 0, 0), Vec3f(scale * Vec3f(1000, -500, 300))}) {
+            const BakeResult result = bakeAt(scale, offset);
+            EXPECT_EQ(result.ao, reference.ao) << scale;
+            ASSERT_EQ(result.coefficients.size(), reference.coefficients.size());
+            for (size_t k = 0; k < result.coefficients.size(); ++k)
+                EXPECT_NEAR(result.coefficients[k], reference.coefficients[k], 1e-5f) << scale;
+        }
 }
 
 TEST(Bake, LowerOrdersArePrefixes) {

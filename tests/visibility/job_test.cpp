@@ -91,17 +91,19 @@ TEST_F(PrecomputeJob, BakesTexels) {
     EXPECT_EQ(visibilityFile->madeFrom.at("mesh.glb"), bundle.find("mesh.glb")->xxh3);
     EXPECT_EQ(bundle.find("mesh.glb")->madeFrom.at(given.meshPath), xxh3HexOfFile(given.meshPath));
     EXPECT_THAT(visibilityFile->madeBy, testing::StartsWith("prt precompute "));
-    EXPECT_THAT(visibilityFile->madeBy, testing::HasSubstr("--texels 64 --order 3 --rays 256"));
+    EXPECT_THAT(visibilityFile->madeBy,
+                testing::HasSubstr("--texels 64 --order 3 --rays 256 --projection irradiance"));
     const std::string section = bundle.section("precompute");
-    for (const char* key : {"\"points\"", "\"rays\"", "\"rays_per_s\"", "\"seconds\"", "\"peak_rss_bytes\"",
-                            "\"validity\"", "\"gutter_filled\"", "\"utilisation\""})
+    for (const char* key :
+         {"\"points\"", "\"rays\"", "\"rays_per_s\"", "\"seconds\"", "\"peak_rss_bytes\"", "\"validity\"",
+          "\"gutter_filled\"", "\"utilisation\"", "\"projection_cone_deg\"", "\"projection_floor\""})
         EXPECT_THAT(section, testing::HasSubstr(key));
 
     const VisibilityMap map = readVisibilityFile(bundle.pathOf("visibility.exr").string());
     EXPECT_EQ(map.grid.domain, PointDomain::Texel);
     EXPECT_EQ(map.grid.width, 64);
     EXPECT_EQ(map.shOrder, 3);
-    EXPECT_EQ(map.attributes.at("projection"), "plain");
+    EXPECT_EQ(map.projection, Projection{});
     EXPECT_EQ(map.attributes.at("directionSet"), "spherical-fibonacci");
     EXPECT_EQ(map.attributes.at("rays"), "256");
     EXPECT_EQ(map.attributes.at("embreeIsa"), report.instructionSet);
@@ -124,6 +126,24 @@ TEST_F(PrecomputeJob, BakesTexels) {
         open += map.ao[t] == 1.0f;
     }
     EXPECT_GT(open, 50u);
+}
+
+TEST_F(PrecomputeJob, PlainProjectionDiffersInCoefficientsAlone) {
+    PrecomputeSettings given = settings(writeObj("house.obj", houseOnGround()));
+    const auto bake = [&](const Projection& projection) {
+        given.projection = projection;
+        runPrecompute(given);
+        return readVisibilityFile(Bundle::open(given.bundlePath).pathOf("visibility.exr").string());
+    };
+    const VisibilityMap weighted = bake({}), plain = bake(kPlainProjection);
+    EXPECT_EQ(plain.projection, kPlainProjection);
+    EXPECT_EQ(weighted.ao, plain.ao);
+    EXPECT_EQ(weighted.validity, plain.validity);
+    EXPECT_NE(weighted.coefficients, plain.coefficients);
+    const Bundle bundle = Bundle::open(given.bundlePath);
+    EXPECT_THAT(bundle.section("precompute"), testing::HasSubstr("\"projection\": \"plain\""));
+    EXPECT_THAT(bundle.section("precompute"), testing::Not(testing::HasSubstr("projection_floor")));
+    EXPECT_THAT(bundle.find("visibility.exr")->madeBy, testing::HasSubstr("--projection plain"));
 }
 
 TEST_F(PrecomputeJob, BakesVertices) {

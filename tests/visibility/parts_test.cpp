@@ -8,8 +8,11 @@
 #include <random>
 
 #include "precompute/math/directions.h"
+#include "precompute/math/irradiance_projection.h"
+#include "precompute/math/sh.h"
 #include "precompute/visibility/accumulate.h"
 #include "precompute/visibility/trace_blocks.h"
+#include "tests/rays/shapes.h"
 
 namespace prt {
 namespace {
@@ -34,6 +37,103 @@ TEST(AddTableRows, SumsInTheOrderOfRows) {
                 EXPECT_EQ(sum[c], 0.5f + expected);  // to the bit
             }
         }
+    }
+}
+
+TEST(AddWeightedTableRows, MultipliesAndAddsWithoutFusing) {
+    std::mt19937 random(3);
+    std::uniform_real_distribution<float> uniform(-1, 1);
+    for (size_t columns = 1; columns <= 100; columns += 3) {
+        const size_t stride = paddedColumns(columns);
+        std::vector<float> table(200 * stride);
+        for (float& value : table) value = uniform(random);
+        for (const size_t count : {0, 1, 7, 150}) {
+            std::vector<uint16_t> rows(count);
+            std::vector<float> weights(count);
+            for (uint16_t& row : rows) row = uint16_t(random() % 200);
+            for (float& weight : weights) weight = uniform(random);
+            std::vector<float> sum(stride, 0.5f);
+            addWeightedTableRows(table.data(), stride, rows.data(), weights.data(), count, sum.data());
+            for (size_t c = 0; c < stride; ++c) {
+                float expected = 0;
+                for (size_t j = 0; j < count; ++j) {
+                    const volatile float product = weights[j] * table[rows[j] * stride + c];
+                    expected += product;
+                }
+                EXPECT_EQ(sum[c], 0.5f + expected);  // to the bit
+            }
+        }
+    }
+}
+
+TEST(WeighRows, InterpolatesTheTableAtTheCosine) {
+    const std::vector<Vec3f> directions = sphericalFibonacci(500);
+    std::vector<float> x, y, z;
+    for (const Vec3f& d : directions) {
+        x.push_back(d.x());
+        y.push_back(d.y());
+        z.push_back(d.z());
+    }
+    std::vector<uint16_t> rows(directions.size());
+    std::iota(rows.begin(), rows.end(), uint16_t(0));
+    std::reverse(rows.begin(), rows.end());
+    const CosineTable square(1024, [](double c) { return c * c; });
+    std::vector<float> cosines(rows.size()), weights(rows.size());
+    // The last two are directions of the set: cosines of ±1, or beyond by rounding.
+    for (const Vec3f& normal :
+         {Vec3f(0, 0, 1), Vec3f(0.6f, -0.48f, 0.64f), directions[17], Vec3f(-directions[17])}) {
+        weighRows({x.data(), y.data(), z.data()}, normal.data(), square, rows.data(), rows.size(),
+                  cosines.data(), weights.data());
+        for (size_t j = 0; j < rows.size(); ++j) {
+            const double cosine = normal.cast<double>().dot(directions[rows[j]].cast<double>());
+            EXPECT_NEAR(cosines[j], cosine, 2e-7);
+            EXPECT_LE(std::abs(cosines[j]), 1);
+            EXPECT_NEAR(weights[j], cosine * cosine, 2e-6);
+        }
+    }
+}
+
+// An item whose parts face three ways: the weight and the constraint are about the item's own normal, each
+// part keeps its own horizon.
+TEST(BakeItems, PartsOfSeveralNormalsAreWeightedAboutTheItems) {
+    const shapes::Mesh box = shapes::box({-1, -1, -1}, {1, 1, 1});
+    const RayCaster caster(box.positions, box.indices);
+    std::vector<SurfacePoint> points;
+    for (uint32_t t = 0; t < 12; ++t)
+        if (box.normal(t).minCoeff() > -0.5f && t % 2 == 0)
+            points.push_back({box.point(t, 0.3, 0.3), box.normal(t), t});
+    ASSERT_EQ(points.size(), 3u);
+    const std::vector<uint32_t> first = {0, 3}, shareEnd = {0x55555555u, 0xaaaaaaaau, 0xffffffffu};
+    const std::vector<Vec3f> normals = {Vec3f(1, 1, 1).normalized()};
+    BakeItems items;
+    items.points = points;
+    items.firstPoint = first;
+    items.shareEnd = shareEnd;
+    items.normals = normals;
+    BakeOptions options;
+    options.rays = 900;
+    const std::vector<Vec3f> directions = sphericalFibonacci(options.rays);
+    for (const int shOrder : {1, 3, 6}) {
+        options.shOrder = shOrder;
+        const BakeResult result = bakeItems(caster, items, options, "items");
+        const size_t columns = size_t(shCount(shOrder));
+        std::vector<double> sum(columns, 0.0), basis(columns);
+        double seen = 0, open = 0;
+        for (uint32_t k = 0; k < directions.size(); ++k) {
+            const double cosine = double(normals[0].dot(directions[k]));
+            open += std::max(0.0, cosine);
+            if (!(points[subPointOfDirection(items, 0, k)].normal.dot(directions[k]) > 0)) continue;
+            seen += std::max(0.0, cosine);
+            evalSh(shOrder, directions[k].cast<double>(), basis);
+            for (size_t c = 0; c < columns; ++c)
+                sum[c] += irradianceWeight(cosine) * basis[c] * 4 * std::numbers::pi / options.rays;
+        }
+        const std::vector<float> b(sum.begin(), sum.end());
+        std::vector<float> expected(columns);
+        IrradianceProjection(shOrder).solve(normals[0], b, float(std::numbers::pi * seen / open), expected);
+        for (size_t c = 0; c < columns; ++c) EXPECT_NEAR(result.coefficients[c], expected[c], 2e-3) << c;
+        EXPECT_EQ(result.ao[0], 1.0f);
+        EXPECT_LT(seen / open, 0.95);
     }
 }
 

@@ -7,5 +7,6 @@ void runMeasureParameterization(int argc, char** argv);
 void runMeasureBasis(int argc, char** argv);
 void runMeasureRotation(int argc, char** argv);
 void runMeasureProduct(int argc, char** argv);
+void runMeasureProjection(int argc, char** argv);
 
 }  // namespace prt::tools
