@@ -6,31 +6,57 @@
 namespace prt {
 namespace {
 
-// The partial sums of `Width` columns stay in registers over all rows.
-template <size_t Width, bool kWeighted>
+constexpr size_t kLanes = 16;
+typedef float Lanes __attribute__((vector_size(kLanes * sizeof(float)), aligned(alignof(float))));
+
+inline __attribute__((always_inline)) Lanes load(const float* from) {
+    Lanes lanes;
+    __builtin_memcpy(&lanes, from, sizeof lanes);
+    return lanes;
+}
+inline __attribute__((always_inline)) void store(const Lanes& lanes, float* to) {
+    __builtin_memcpy(to, &lanes, sizeof lanes);
+}
+
+// The partial sums of `Groups` times 16 columns stay in registers over all rows. One group alone waits for
+// its own additions: several side by side hide that.
+template <size_t Groups, bool kWeighted>
 inline __attribute__((always_inline)) void addColumns(const float* table, size_t stride, const uint16_t* rows,
                                                       const float* weights, size_t rowCount, float* sum) {
-    float partial[Width] = {};
+    Lanes partial[Groups] = {};
     for (size_t j = 0; j < rowCount; ++j) {
         const float* row = table + size_t(rows[j]) * stride;
-        if constexpr (kWeighted) {
-            const float weight = weights[j];
-            for (size_t c = 0; c < Width; ++c) partial[c] += weight * row[c];
-        } else {
-            for (size_t c = 0; c < Width; ++c) partial[c] += row[c];
+        for (size_t g = 0; g < Groups; ++g) {
+            if constexpr (kWeighted)
+                partial[g] += weights[j] * load(row + g * kLanes);
+            else
+                partial[g] += load(row + g * kLanes);
         }
     }
-    for (size_t c = 0; c < Width; ++c) sum[c] += partial[c];
+    for (size_t g = 0; g < Groups; ++g) store(load(sum + g * kLanes) + partial[g], sum + g * kLanes);
 }
 
 template <bool kWeighted>
 inline __attribute__((always_inline)) void addRows(const float* table, size_t stride, const uint16_t* rows,
                                                    const float* weights, size_t rowCount, float* sum) {
     size_t column = 0;
-    for (; column + 16 <= stride; column += 16)
-        addColumns<16, kWeighted>(table + column, stride, rows, weights, rowCount, sum + column);
-    for (; column + 4 <= stride; column += 4)
+    for (; column + 4 * kLanes <= stride; column += 4 * kLanes)
         addColumns<4, kWeighted>(table + column, stride, rows, weights, rowCount, sum + column);
+    table += column;
+    sum += column;
+    switch ((stride - column) / kLanes) {
+        case 3:
+            addColumns<3, kWeighted>(table, stride, rows, weights, rowCount, sum);
+            break;
+        case 2:
+            addColumns<2, kWeighted>(table, stride, rows, weights, rowCount, sum);
+            break;
+        case 1:
+            addColumns<1, kWeighted>(table, stride, rows, weights, rowCount, sum);
+            break;
+        default:
+            break;
+    }
 }
 
 }  // namespace
@@ -47,17 +73,16 @@ void addWeightedTableRows(const float* table, size_t stride, const uint16_t* row
 }
 
 PRT_TARGET_CLONES
-void weighRows(const DirectionColumns& directions, const float* normal, const CosineTable& f,
-               const uint16_t* rows, size_t rowCount, float* cosines, float* weights) {
+void weighRows(const DirectionColumns& directions, size_t directionCount, const float* normal,
+               const CosineTable& f, const uint16_t* rows, size_t rowCount, float* cosines, float* weights) {
     const float *x = directions.x, *y = directions.y, *z = directions.z, *values = f.values();
     const float nx = normal[0], ny = normal[1], nz = normal[2], half = 0.5f * float(f.steps());
-    for (size_t j = 0; j < rowCount; ++j) {
-        const size_t k = rows[j];
+    for (size_t k = 0; k < directionCount; ++k) {
         const float cosine = nx * x[k] + ny * y[k] + nz * z[k];
-        cosines[j] = cosine < -1 ? -1 : cosine > 1 ? 1 : cosine;
+        cosines[k] = cosine < -1 ? -1 : cosine > 1 ? 1 : cosine;
     }
     for (size_t j = 0; j < rowCount; ++j) {
-        const float place = (cosines[j] + 1) * half;
+        const float place = (cosines[rows[j]] + 1) * half;
         const int step = int(place);
         weights[j] = values[step] + (place - float(step)) * (values[step + 1] - values[step]);
     }

@@ -8,11 +8,11 @@
 
 namespace prt {
 
-/// Row length of a table for so many columns: the next multiple of 4.
-constexpr size_t paddedColumns(size_t columns) { return (columns + 3) / 4 * 4; }
+/// Row length of a table for so many columns: the next multiple of 16.
+constexpr size_t paddedColumns(size_t columns) { return (columns + 15) / 16 * 16; }
 
 /// sum[c] += Σ_j table[rows[j]·stride + c], added in the order of j.
-/// @param stride  floats per row, a multiple of 4
+/// @param stride  floats per row, a multiple of 16
 /// @param sum     [stride]
 void addTableRows(const float* table, size_t stride, const uint16_t* rows, size_t rowCount, float* sum);
 
@@ -43,9 +43,11 @@ struct DirectionColumns {
     const float *x, *y, *z;
 };
 
-/// cosines[j] = n·ω_rows[j], clamped to [−1, 1], and weights[j] = f(cosines[j]).
-/// @param normal  [3]
-void weighRows(const DirectionColumns& directions, const float* normal, const CosineTable& f,
-               const uint16_t* rows, size_t rowCount, float* cosines, float* weights);
+/// cosines[k] = n·ω_k, clamped to [−1, 1], of all directions, and weights[j] = f(cosines[rows[j]]).
+/// @param directionCount  at least 1
+/// @param normal          [3]
+/// @param cosines         [directionCount]   @param weights  [rowCount]
+void weighRows(const DirectionColumns& directions, size_t directionCount, const float* normal,
+               const CosineTable& f, const uint16_t* rows, size_t rowCount, float* cosines, float* weights);
 
 }  // namespace prt

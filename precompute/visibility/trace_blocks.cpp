@@ -153,11 +153,12 @@ class BlockTracer {
             return;
         }
         const Vec3f normal = itemNormal(i);
-        weighRows({&table_.x[start], &table_.y[start], &table_.z[start]}, normal.data(), weighting_->weight,
-                  rows, listCounts_[i], cosines_.data(), weights_.data());
+        weighRows({&table_.x[start], &table_.y[start], &table_.z[start]},
+                  std::min(kChunk, table_.directions.size() - start), normal.data(), weighting_->weight, rows,
+                  listCounts_[i], cosines_.data(), weights_.data());
         addWeightedTableRows(basis, table_.stride, rows, weights_.data(), listCounts_[i], sum);
         if (isSinglePoint(i) && selectedNormal(i) == normal) return;
-        for (size_t j = 0; j < listCounts_[i]; ++j) seenAboutNormal_[i] += std::max(0.0f, cosines_[j]);
+        for (size_t j = 0; j < listCounts_[i]; ++j) seenAboutNormal_[i] += std::max(0.0f, cosines_[rows[j]]);
     }
 
     void select(size_t i, uint32_t point) {
@@ -250,7 +251,7 @@ class BlockTracer {
     std::array<uint32_t, kBlock> firstOffset_{}, offsetStart_{};
     std::array<float, kBlock> normalX_{}, normalY_{}, normalZ_{}, seenSum_{}, openSum_{};
     std::array<float, kBlock> seenAboutNormal_{};  // of items of several normals
-    std::array<float, kChunk> cosines_, weights_;  // of one item's visible directions
+    std::array<float, kChunk> cosines_, weights_;  // of one item's directions, and of the visible
     std::array<Vec3f, kBlock> origin_, rayOrigin_;
     std::array<uint16_t, kBlock> facing_{}, listCounts_{};
     std::array<uint8_t, kBlock> blocked_{};
