@@ -3,6 +3,7 @@
 #include "compress/compress_visibility.h"
 
 #include "compress/irradiance_weights.h"
+#include "compress/refine_basis.h"
 #include "precompute/base/check.h"
 #include "precompute/base/error.h"
 #include "precompute/base/parallel.h"
@@ -45,9 +46,16 @@ CompressedVisibility compressVisibility(std::span<const float> rows, std::span<c
     }
     CompressedVisibility result;
     result.pca = computePca(plainRows, use, dimension, components);
-    result.weights = fit == WeightsFit::Irradiance
-                         ? projectPcaForIrradiance(result.pca, rows, normals, shOrder, projection.weight)
-                         : projectPca(result.pca, plainRows, dimension);
+    if (fit == WeightsFit::Plain) {
+        result.weights = projectPca(result.pca, plainRows, dimension);
+        return result;
+    }
+    const IrradianceWeight& weight = projection.weight;
+    result.weights = projectPcaForIrradiance(result.pca, rows, normals, shOrder, weight);
+    if (projection.kind == ProjectionKind::Plain) return result;
+    result.pca =
+        refineForIrradiance(result.pca, rows, plainRows, result.weights, normals, use, shOrder, weight);
+    result.weights = projectPcaForIrradiance(result.pca, rows, normals, shOrder, weight);
     return result;
 }
 

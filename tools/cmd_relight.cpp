@@ -229,7 +229,9 @@ class Relight {
             truth_ = traceReference(caster, surface_, directions_);
             return;
         }
-        TruncationFloor floor(surface_, directions_, data_.shOrder);
+        const Projection& projection =
+            data_.visibility ? data_.visibility->projection : data_.pca->projection;
+        TruncationFloor floor(surface_, directions_, data_.shOrder, projection);
         truth_ = traceReference(caster, surface_, directions_, floor.visitor());
         floor_ = floor.irradiance();
     }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "precompute/base/parallel.h"
 #include "precompute/math/sh.h"
@@ -10,15 +11,15 @@
 namespace prt::tools {
 namespace {
 
-/// v += ΔΩ_k Y_k over visible directions.
+/// v += weights_k Y_k over visible directions.
 PRT_TARGET_CLONES
-void projectVisible(const uint8_t* visible, const float* basis, const float* solidAngle, size_t directions,
+void projectVisible(const uint8_t* visible, const float* basis, const float* weights, size_t directions,
                     int n, float* v) {
     std::fill_n(v, n, 0.0f);
     for (size_t k = 0; k < directions; ++k) {
         if (!visible[k]) continue;
         const float* row = basis + k * size_t(n);
-        const float weight = solidAngle[k];
+        const float weight = weights[k];
         for (int i = 0; i < n; ++i) v[i] += weight * row[i];
     }
 }
@@ -66,8 +67,11 @@ IrradianceError compareIrradiance(std::span<const float> estimate, std::span<con
 }
 
 TruncationFloor::TruncationFloor(const SurfaceImage& surface, const ReferenceDirections& directions,
-                                 int shOrder)
+                                 int shOrder, const Projection& projection)
     : surface_(surface), directions_(directions), coefficients_(shCount(shOrder)) {
+    if (projection.kind == ProjectionKind::Irradiance)
+        weighted_.emplace(Weighted{IrradianceProjection(shOrder, projection.weight),
+                                   irradianceWeightTable(projection.weight)});
     const size_t count = directions.direction.size(), environments = directions.radiance.size();
     basis_.resize(count * size_t(coefficients_));
     evalShBatch(shOrder, directions.direction, basis_);
@@ -80,12 +84,31 @@ TruncationFloor::TruncationFloor(const SurfaceImage& surface, const ReferenceDir
     irradiance_.assign(environments, std::vector<float>(surface.pixels() * 3, 0.0f));
 }
 
+void TruncationFloor::projectWeighted(const Vec3f& normal, std::span<const uint8_t> visible,
+                                      std::span<float> v) const {
+    std::vector<float> weights(visible.size(), 0.0f);
+    double seen = 0, open = 0;
+    for (size_t k = 0; k < visible.size(); ++k) {
+        const float cosine = std::clamp(normal.dot(directions_.direction[k]), -1.0f, 1.0f);
+        const double solidAngle = double(directions_.solidAngleSr[k]);
+        open += std::max(0.0, double(cosine)) * solidAngle;
+        if (!visible[k]) continue;
+        seen += std::max(0.0, double(cosine)) * solidAngle;
+        weights[k] = float(double(weighted_->weight(cosine)) * solidAngle);
+    }
+    projectVisible(visible.data(), basis_.data(), weights.data(), visible.size(), coefficients_, v.data());
+    weighted_->projection.solve(normal, v, open > 0 ? float(std::numbers::pi * seen / open) : 0.0f, v);
+}
+
 ReferenceVisitor TruncationFloor::visitor() {
     return [this](size_t pixel, std::span<const uint8_t> visible) {
         const size_t environments = irradiance_.size();
         std::vector<float> v(static_cast<size_t>(coefficients_)), out(environments * 3);
-        projectVisible(visible.data(), basis_.data(), directions_.solidAngleSr.data(), visible.size(),
-                       coefficients_, v.data());
+        if (weighted_)
+            projectWeighted(surface_.geometricNormal[pixel], visible, v);
+        else
+            projectVisible(visible.data(), basis_.data(), directions_.solidAngleSr.data(), visible.size(),
+                           coefficients_, v.data());
         integrateExpansion(v.data(), basis_.data(), directions_.direction.data(), light_.data(),
                            visible.size(), coefficients_, int(out.size()),
                            surface_.shadingNormal[pixel].data(), out.data());

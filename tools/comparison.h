@@ -1,11 +1,14 @@
 // How far relit irradiance is from ray-traced truth, and how near any bake of an order can come.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "precompute/io/surface_image.h"
+#include "precompute/math/irradiance_projection.h"
+#include "precompute/visibility/accumulate.h"
 #include "runtime/reference/reference.h"
 
 namespace prt::tools {
@@ -22,20 +25,30 @@ IrradianceError compareIrradiance(std::span<const float> estimate, std::span<con
 
 /// Irradiance of every pixel from its own traced visibility projected to shOrder bands, lit by the whole
 /// environment:
-///   v_i = Σ_k ΔΩ_k V_k Y_i(ω_k),   E = Σ_k (v·Y(ω_k)) max(0, n_s·ω_k) L_k ΔΩ_k
-/// What remains against the reference is the truncation to that order alone, so no bake of that order can do
-/// better.
+///   v_i = Σ_k ΔΩ_k V_k Y_i(ω_k), or its weighted form about the geometric normal (IrradianceProjection),
+///   E = Σ_k (v·Y(ω_k)) max(0, n_s·ω_k) L_k ΔΩ_k
+/// What remains against the reference is what this projection to that order loses; what a bake adds comes
+/// from its rays, from sharing values between neighbouring points and from compression.
 class TruncationFloor {
   public:
-    TruncationFloor(const SurfaceImage& surface, const ReferenceDirections& directions, int shOrder);
+    /// @param projection  that of the bake to be judged
+    TruncationFloor(const SurfaceImage& surface, const ReferenceDirections& directions, int shOrder,
+                    const Projection& projection = kPlainProjection);
     /// To be handed to traceReference; the object must outlive the call.
     ReferenceVisitor visitor();
     /// [environments][pixels×3]
     const std::vector<std::vector<float>>& irradiance() const { return irradiance_; }
 
   private:
+    void projectWeighted(const Vec3f& normal, std::span<const uint8_t> visible, std::span<float> v) const;
+
     const SurfaceImage& surface_;
     const ReferenceDirections& directions_;
+    struct Weighted {
+        IrradianceProjection projection;
+        CosineTable weight;
+    };
+    std::optional<Weighted> weighted_;
     int coefficients_;
     std::vector<float> basis_;  ///< [K×n²]
     std::vector<float> light_;  ///< [K×3·environments] L ΔΩ

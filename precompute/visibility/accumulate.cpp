@@ -6,16 +6,14 @@
 namespace prt {
 namespace {
 
+constexpr int kWeightSteps = 1024;
+
 constexpr size_t kLanes = 16;
 typedef float Lanes __attribute__((vector_size(kLanes * sizeof(float)), aligned(alignof(float))));
 
-inline __attribute__((always_inline)) Lanes load(const float* from) {
-    Lanes lanes;
+// By reference: passing vectors by value depends on the instruction set.
+inline __attribute__((always_inline)) void load(const float* from, Lanes& lanes) {
     __builtin_memcpy(&lanes, from, sizeof lanes);
-    return lanes;
-}
-inline __attribute__((always_inline)) void store(const Lanes& lanes, float* to) {
-    __builtin_memcpy(to, &lanes, sizeof lanes);
 }
 
 // The partial sums of `Groups` times 16 columns stay in registers over all rows. One group alone waits for
@@ -27,13 +25,20 @@ inline __attribute__((always_inline)) void addColumns(const float* table, size_t
     for (size_t j = 0; j < rowCount; ++j) {
         const float* row = table + size_t(rows[j]) * stride;
         for (size_t g = 0; g < Groups; ++g) {
+            Lanes values;
+            load(row + g * kLanes, values);
             if constexpr (kWeighted)
-                partial[g] += weights[j] * load(row + g * kLanes);
+                partial[g] += weights[j] * values;
             else
-                partial[g] += load(row + g * kLanes);
+                partial[g] += values;
         }
     }
-    for (size_t g = 0; g < Groups; ++g) store(load(sum + g * kLanes) + partial[g], sum + g * kLanes);
+    for (size_t g = 0; g < Groups; ++g) {
+        Lanes total;
+        load(sum + g * kLanes, total);
+        total += partial[g];
+        __builtin_memcpy(sum + g * kLanes, &total, sizeof total);
+    }
 }
 
 template <bool kWeighted>
@@ -60,6 +65,10 @@ inline __attribute__((always_inline)) void addRows(const float* table, size_t st
 }
 
 }  // namespace
+
+CosineTable irradianceWeightTable(const IrradianceWeight& weight) {
+    return {kWeightSteps, [&](double cosine) { return irradianceWeight(cosine, weight); }};
+}
 
 PRT_TARGET_CLONES
 void addTableRows(const float* table, size_t stride, const uint16_t* rows, size_t rowCount, float* sum) {

@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "precompute/math/irradiance_weight.h"
+
 namespace prt {
 
 /// Row length of a table for so many columns: the next multiple of 16.
@@ -30,6 +32,13 @@ class CosineTable {
         for (int k = 0; k <= steps; ++k) values_.push_back(float(function(2.0 * k / steps - 1)));
         values_.push_back(values_.back());
     }
+    /// @param cosine  −1..1
+    float operator()(float cosine) const {
+        const float place = (cosine + 1) * 0.5f * float(steps_);
+        const int step = int(place);
+        const float* value = &values_[size_t(step)];
+        return value[0] + (place - float(step)) * (value[1] - value[0]);
+    }
     int steps() const { return steps_; }
     const float* values() const { return values_.data(); }
 
@@ -37,6 +46,9 @@ class CosineTable {
     int steps_;
     std::vector<float> values_;  // one more than the steps have ends, so that 1 needs no case of its own
 };
+
+/// w of the cosine to the geometric normal, good to 1e-6.
+CosineTable irradianceWeightTable(const IrradianceWeight& weight);
 
 /// Unit directions as a structure of arrays.
 struct DirectionColumns {

@@ -34,9 +34,6 @@ constexpr size_t kListStride = kChunk + 32;
 constexpr int kInsideDirections = 128;   // over the sphere; half of them lie above the horizon
 constexpr float kInsideAoLimit = 0.35f;  // more open points are not examined: an inside point is nearly dark
 
-// Steps of the table of weights: interpolation errs by less than 1e-6.
-constexpr int kWeightSteps = 1024;
-
 // The directions, and their basis functions as a table of padded rows.
 struct DirectionTable {
     std::vector<Vec3f> directions;
@@ -64,8 +61,7 @@ struct Weighting {
     IrradianceProjection projection;
 
     Weighting(int shOrder, const IrradianceWeight& parameters)
-        : weight(kWeightSteps, [&](double cosine) { return irradianceWeight(cosine, parameters); }),
-          projection(shOrder, parameters) {}
+        : weight(irradianceWeightTable(parameters)), projection(shOrder, parameters) {}
 };
 
 uint32_t hash32(uint32_t x) {  // finaliser of MurmurHash3

@@ -11,43 +11,11 @@
 
 #include "precompute/base/parallel.h"
 #include "precompute/math/sh.h"
+#include "tests/compress/test_points.h"
 #include "tests/math/slow_irradiance_weight.h"
 
 namespace prt {
 namespace {
-
-// Rows of visibility: caps that block, cut at the horizon of the normal.
-struct Points {
-    std::vector<float> rows;
-    std::vector<Vec3f> normals;
-};
-Points testPoints(int shOrder, size_t count, unsigned seed, size_t distinctNormals) {
-    std::mt19937 random(seed);
-    std::normal_distribution<float> normal;
-    const auto direction = [&] {
-        return Vec3f(Vec3f(normal(random), normal(random), normal(random)).normalized());
-    };
-    std::vector<Vec3f> choices(distinctNormals);
-    for (Vec3f& choice : choices) choice = direction();
-    const std::vector<SphereNode> nodes = sphereQuadrature(2 * shOrder + 6);
-    const size_t dimension = size_t(shCount(shOrder));
-    std::vector<std::vector<double>> y(nodes.size(), std::vector<double>(dimension));
-    for (size_t k = 0; k < nodes.size(); ++k) evalSh(shOrder, nodes[k].direction, y[k]);
-    Points points;
-    for (size_t i = 0; i < count; ++i) {
-        const Vec3f n = choices[random() % distinctNormals], blocker = direction();
-        const float size = std::abs(normal(random)) * 0.5f;
-        std::vector<double> row(dimension, 0.0);
-        for (size_t k = 0; k < nodes.size(); ++k) {
-            const Vec3f d = nodes[k].direction.cast<float>();
-            if (d.dot(n) <= 0 || d.dot(blocker) > size) continue;
-            for (size_t c = 0; c < dimension; ++c) row[c] += nodes[k].weightSr * y[k][c];
-        }
-        points.normals.push_back(n);
-        points.rows.insert(points.rows.end(), row.begin(), row.end());
-    }
-    return points;
-}
 
 float largestDifference(const std::vector<float>& a, const std::vector<float>& b) {
     EXPECT_EQ(a.size(), b.size());

@@ -7,7 +7,8 @@ namespace prt::test {
 namespace {
 
 const std::vector<std::string> kCommands = {"precompute", "compress", "tabulate", "relight", "info"};
-const std::vector<std::string> kMeasurements = {"basis", "parameterization", "product", "rotation"};
+const std::vector<std::string> kMeasurements = {"basis", "parameterization", "product", "projection",
+                                                "rotation"};
 
 TEST(Options, NoArgumentsPrintsUsageAndFails) {
     Folder folder;
@@ -79,7 +80,9 @@ TEST(Options, JsonOnStandardOutputIsNothingButJson) {
          "none"},
         {"measure", "product", "--orders", "3", "--rounds", "1", "--plot", "none"},
         {"measure", "rotation", "--orders", "3", "--rounds", "1", "--error-orders", "3", "--hsh-orders", "2",
-         "--table-angles", "5", "--plot", "none"}};
+         "--table-angles", "5", "--plot", "none"},
+        {"measure", "projection", "box.obj", "--points", "2", "--population", "20", "--rays", "64",
+         "--orders", "3", "--tilts", "0", "--env", "sky:overcast", "--plot", "none"}};
     const std::vector<std::vector<std::string>> keys = {
         {"points", "rays", "rays_per_s", "seconds", "peak_rss_bytes", "validity"},
         {"components", "explained_variance", "relative_rmse", "seconds"},
@@ -89,7 +92,8 @@ TEST(Options, JsonOnStandardOutputIsNothingButJson) {
         {"measure", "rows"},
         {"measure", "points", "rows"},
         {"measure", "cpu", "rows"},
-        {"measure", "cpu", "rows", "errors", "hsh_errors", "hsh_tables", "paper_times"}};
+        {"measure", "cpu", "rows", "errors", "hsh_errors", "hsh_tables", "paper_times"},
+        {"measure", "rows", "summary", "meshes", "cone_deg"}};
     for (size_t i = 0; i < commands.size(); ++i) {
         auto arguments = commands[i];
         arguments.insert(arguments.end(), {"--json", "-"});

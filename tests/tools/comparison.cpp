@@ -61,5 +61,43 @@ TEST(TruncationFloor, EqualsTheSeriesOfAHemisphere) {
     }
 }
 
+/// With the projection of the bake: exact under constant light for the geometric normal, near the truth for
+/// tilted ones, whatever blocks the view.
+TEST(TruncationFloor, WeightedProjectionKeepsConstantLight) {
+    ReferenceDirections directions;
+    for (const SphereNode& node : sphereQuadrature(121)) {
+        directions.direction.push_back(node.direction.cast<float>());
+        directions.solidAngleSr.push_back(float(node.weightSr));
+    }
+    const size_t count = directions.direction.size();
+    directions.radiance.assign(1, std::vector<float>(3 * count, 1.0f));
+    std::vector<uint8_t> visible(count);
+    for (const float wall : {2.0f, 0.3f}) {
+        double seen = 0, open = 0, seenTilted = 0;
+        SurfaceImage surface = onePixel(Vec3f::UnitY());
+        surface.geometricNormal[0] = Vec3f::UnitY();
+        const Vec3f tilted = Vec3f(0.3f, 0.9f, 0.1f).normalized();
+        for (size_t k = 0; k < count; ++k) {
+            const Vec3f& d = directions.direction[k];
+            visible[k] = d.y() > 0 && d.x() < wall;
+            const double weight = double(directions.solidAngleSr[k]);
+            open += std::max(0.0f, d.y()) * weight;
+            seen += visible[k] * double(d.y()) * weight;
+            seenTilted += visible[k] * double(std::max(0.0f, d.dot(tilted))) * weight;
+        }
+        for (const int shOrder : {1, 3, 6}) {
+            surface.shadingNormal[0] = Vec3f::UnitY();
+            TruncationFloor straight(surface, directions, shOrder, Projection{});
+            straight.visitor()(0, visible);
+            EXPECT_NEAR(straight.irradiance()[0][0], kPi * seen / open, 0.005 * kPi) << shOrder;
+            if (shOrder == 1) continue;
+            surface.shadingNormal[0] = tilted;
+            TruncationFloor turned(surface, directions, shOrder, Projection{});
+            turned.visitor()(0, visible);
+            EXPECT_NEAR(turned.irradiance()[0][0], seenTilted, 0.02 * kPi) << shOrder;
+        }
+    }
+}
+
 }  // namespace
 }  // namespace prt::tools

@@ -175,7 +175,7 @@ TEST(DealingOfDirections, SharesAreEvenOverTheSphere) {
         for (uint32_t p = first[item]; p < first[item + 1]; ++p)
             shareEnd.push_back(uint32_t(std::min((passed += shares[p]) * 4294967296.0, 4294967295.0)));
     }
-    const BakeItems items{points, first, shareEnd};
+    const BakeItems items{points, first, shareEnd, {}};
     for (uint32_t item = 0; item < 3; ++item) {
         std::vector<int> count(9, 0);
         std::vector<Vec3d> sum(9, Vec3d::Zero());

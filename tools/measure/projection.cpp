@@ -208,7 +208,11 @@ double IrradianceJudge::relativeRmse(std::span<const float> coefficients, int sh
     PRT_CHECK_LE(count, coefficients_);
     PRT_CHECK_LT(tilt, tilts_);
     PRT_CHECK_LE(points_ * count, coefficients.size());
-    std::vector<double> error(channels_ / 3, 0.0), square(error.size(), 0.0), estimate(channels_);
+    struct Sums {
+        double error = 0, square = 0;
+    };
+    std::vector<Sums> sums(channels_ / 3);
+    std::vector<double> estimate(channels_);
     for (size_t p = 0; p < points_; ++p) {
         const size_t place = p * tilts_ + tilt;
         std::fill(estimate.begin(), estimate.end(), 0.0);
@@ -219,15 +223,15 @@ double IrradianceJudge::relativeRmse(std::span<const float> coefficients, int sh
         }
         for (size_t j = 0; j < channels_; ++j) {
             const double truth = double(truth_[place * channels_ + j]), difference = estimate[j] - truth;
-            error[j / 3] += difference * difference;
-            square[j / 3] += truth * truth;
+            sums[j / 3].error += difference * difference;
+            sums[j / 3].square += truth * truth;
         }
     }
     double sum = 0;
     size_t lit = 0;
-    for (size_t e = 0; e < error.size(); ++e) {
-        if (!(square[e] > 0)) continue;
-        sum += std::sqrt(error[e] / square[e]);
+    for (const Sums& environment : sums) {
+        if (!(environment.square > 0)) continue;
+        sum += std::sqrt(environment.error / environment.square);
         ++lit;
     }
     return lit ? sum / double(lit) : 0.0;
