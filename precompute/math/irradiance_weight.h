@@ -21,7 +21,7 @@ struct IrradianceWeight {
     double coneDegrees = 40;
     /// Share of its largest value that is added to w, in [0, 1]. A trade: a smaller floor lowers errors of
     /// irradiance a little further and lets expansions depart more from V.
-    double floor = 0.0005;
+    double floor = 0.0001;
     bool operator==(const IrradianceWeight&) const = default;
 };
 
