@@ -298,6 +298,11 @@ TEST(BadInput, MeasureOptions) {
         {"product", "--orders", "six"},
         {"product", "--methods", "fourier"},
         {"product", "--rounds", "0"},
+        {"projection", "--orders", "11", "box.obj"},
+        {"projection", "--tilts", "90", "box.obj"},
+        {"projection", "--points", "0", "box.obj"},
+        {"projection", "--floor", "2", "box.obj"},
+        {"projection", "--cone", "0", "box.obj"},
         {"rotation", "--orders", "0"},
         {"rotation", "--orders", "3-"},
         {"rotation", "--methods", "zxzxz,"},
@@ -315,6 +320,9 @@ TEST(BadInput, MeasureOptions) {
     }
     for (const char* name : {"basis", "parameterization", "product", "rotation"})
         expectRefused(folder, {"measure", name, "--frobnicate"}, kUsage, {"--frobnicate"});
+    expectRefused(folder, {"measure", "projection", "box.obj", "--frobnicate"}, kUsage, {"--frobnicate"});
+    expectRefused(folder, {"measure", "projection"}, kUsage, {"prt measure projection", "MESH"});
+    expectRefused(folder, {"measure", "projection", "absent.obj", "--quiet"}, kInput, {"absent.obj"});
     expectRefused(folder, {"measure", "weight"}, kUsage, {"weight", "prt measure --help"});
 }
 

@@ -143,7 +143,6 @@ void runMeasureProjection(int argc, char** argv) {
     line.integer("--seed", seed, 0, 1000000000, "of the points and the directions of the tilts");
     addMeasureOptions(line, options);
     if (!line.parse(argc, argv)) return;
-    if (meshes.empty()) throw UsageError("MESH", "none is given", "name one or more mesh files");
     study.seed = uint64_t(seed);
     study.orders = parseIntegerList("--orders", orders, 1, kMaxBundleShOrder);
     study.tiltsDeg.clear();
