@@ -11,10 +11,10 @@
 
 #include "precompute/base/check.h"
 #include "precompute/math/clamped_cosine.h"
-#include "precompute/math/directions.h"
 #include "precompute/math/sh.h"
 #include "precompute/math/sh_legendre.h"
 #include "precompute/math/sh_rotation.h"
+#include "precompute/math/zonal_map.h"
 
 namespace prt {
 namespace {
@@ -22,38 +22,6 @@ namespace {
 constexpr size_t kMostCoefficients = size_t(shCount(kMaxBundleShOrder));
 // Below this floor the map's condition asks for rotations in double.
 constexpr double kFloatFloor = 1e-4;
-
-/// A linear map of expansions that couples functions of equal m and treats ±m alike.
-class ZonalMap {
-  public:
-    /// @param blocks  for m = 0..n−1, over bands m..n−1
-    explicit ZonalMap(const std::vector<Eigen::MatrixXd>& blocks) : shOrder_(int(blocks.size())) {
-        for (const Eigen::MatrixXd& block : blocks)  // by rows
-            for (Eigen::Index a = 0; a < block.rows(); ++a)
-                for (Eigen::Index b = 0; b < block.cols(); ++b) values_.push_back(block(a, b));
-    }
-
-    template <class Value>
-    void apply(const Value* in, Value* out) const {
-        const double* block = values_.data();
-        for (int m = 0; m < shOrder_; ++m) {
-            const int size = shOrder_ - m;
-            for (const int k : {m, -m}) {
-                for (int a = 0; a < size; ++a) {
-                    double sum = 0;
-                    for (int b = 0; b < size; ++b) sum += block[a * size + b] * double(in[shIndex(m + b, k)]);
-                    out[shIndex(m + a, k)] = Value(sum);
-                }
-                if (m == 0) break;
-            }
-            block += size * size;
-        }
-    }
-
-  private:
-    int shOrder_;
-    std::vector<double> values_;
-};
 
 std::vector<Eigen::MatrixXd> matrices(const std::vector<std::vector<double>>& blocks) {
     std::vector<Eigen::MatrixXd> result;
@@ -78,15 +46,6 @@ std::vector<Eigen::MatrixXd> upperHalf(int shOrder) {
         }
     }
     return blocks;
-}
-
-Mat3d localFromWorld(const Vec3f& normal) {
-    const Frame frame = frameAround(normal);
-    Mat3d rotation;
-    rotation.row(0) = frame.tangent.cast<double>();
-    rotation.row(1) = frame.bitangent.cast<double>();
-    rotation.row(2) = frame.normal.cast<double>();
-    return rotation;
 }
 
 bool isUnit(const Vec3f& normal) { return std::abs(normal.squaredNorm() - 1) < 1e-4f; }
