@@ -8,6 +8,7 @@
 #include "precompute/math/clamped_cosine.h"
 #include "precompute/math/sh.h"
 #include "precompute/visibility/bake.h"
+#include "tools/measure/surface_points.h"
 
 namespace prt::tools {
 namespace {

@@ -4,7 +4,6 @@
 
 #include <Eigen/Core>
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <map>
 #include <numbers>
@@ -20,6 +19,7 @@
 #include "precompute/math/environment.h"
 #include "precompute/math/sh.h"
 #include "precompute/visibility/bake.h"
+#include "tools/measure/surface_points.h"
 
 namespace prt::tools {
 namespace {
@@ -27,7 +27,6 @@ namespace {
 using RowMatrixXf = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 constexpr Eigen::Index kChunk = 1024;  // directions between two sums in double
-constexpr int kInsideRays = 64;        // tell which points are dark enough to be looked at
 
 FloatImage halved(const FloatImage& image) {
     FloatImage half{image.width / 2, image.height / 2, image.channels, {}};
@@ -95,23 +94,6 @@ Vec3f tilted(const Vec3f& n, double tiltDeg, double azimuthRad) {
     return (std::cos(tilt) * n.cast<double>() + std::sin(tilt) * side).normalized().cast<float>();
 }
 
-// 1 where a direction above the horizon is not blocked.
-std::vector<float> traceVisibility(const RayCaster& caster, const SurfacePoint& point,
-                                   std::span<const Vec3f> directions) {
-    std::vector<uint32_t> facing;
-    std::vector<Vec3f> rays;
-    for (size_t k = 0; k < directions.size(); ++k)
-        if (point.normal.dot(directions[k]) > 0) {
-            facing.push_back(uint32_t(k));
-            rays.push_back(directions[k]);
-        }
-    std::vector<uint8_t> blocked(rays.size());
-    caster.occluded(caster.offsetOrigin(point.position, point.normal), rays, blocked);
-    std::vector<float> visible(directions.size(), 0.0f);
-    for (size_t j = 0; j < facing.size(); ++j) visible[facing[j]] = blocked[j] ? 0.0f : 1.0f;
-    return visible;
-}
-
 // Σ_k [Y | V]ᵀ H L ΔΩ: rows of transfer, then the truth.
 Eigen::MatrixXd integrate(const LightGroup& group, std::span<const float> visible, const Vec3f& shadingNormal,
                           Eigen::Index coefficients) {
@@ -138,34 +120,6 @@ Eigen::MatrixXd integrate(const LightGroup& group, std::span<const float> visibl
 }
 
 }  // namespace
-
-std::vector<SurfacePoint> randomSurfacePoints(const Scene& scene, size_t count, uint64_t seed) {
-    std::vector<double> area(scene.triangleCount());
-    for (size_t t = 0; t < area.size(); ++t) {
-        std::array<Vec3d, 3> p;
-        for (size_t k = 0; k < 3; ++k) p[k] = scene.positions[scene.indices[3 * t + k]].cast<double>();
-        area[t] = (p[1] - p[0]).cross(p[2] - p[0]).norm() / 2;
-    }
-    std::vector<double> sums(area.size());
-    std::partial_sum(area.begin(), area.end(), sums.begin());
-    if (sums.empty() || !(sums.back() > 0))
-        throw InputError("the mesh", "has no area", "give a mesh with triangles");
-    std::mt19937_64 random(seed);
-    const auto uniform = [&] { return double(random() >> 11) * 0x1p-53; };
-    std::vector<SurfacePoint> points;
-    while (points.size() < count) {
-        const auto place = std::upper_bound(sums.begin(), sums.end(), uniform() * sums.back());
-        const size_t t = std::min(size_t(place - sums.begin()), sums.size() - 1);
-        const double root = std::sqrt(uniform()), v = uniform();
-        Vec3d position = Vec3d::Zero();
-        const std::array<double, 3> weights{1 - root, root * (1 - v), root * v};
-        for (size_t k = 0; k < 3; ++k)
-            position += weights[k] * scene.positions[scene.indices[3 * t + k]].cast<double>();
-        const Vec3f normal = triangleNormal(scene, t);
-        if (normal != Vec3f::Zero()) points.push_back({position.cast<float>(), normal, uint32_t(t)});
-    }
-    return points;
-}
 
 IrradianceJudge::IrradianceJudge(const RayCaster& caster, std::span<const SurfacePoint> points,
                                  std::span<const Environment> environments, std::span<const double> tiltsDeg,
@@ -279,30 +233,14 @@ struct OrderStudy {
     }
 };
 
-// Points that are not inside geometry come first, in their order.
-std::vector<SurfacePoint> outsidePoints(const RayCaster& caster, const Scene& scene,
-                                        const ProjectionStudy& study) {
-    const std::vector<SurfacePoint> points =
-        randomSurfacePoints(scene, size_t(std::max(study.population, study.points)), study.seed);
-    BakeOptions options;
-    options.shOrder = 1;
-    options.rays = kInsideRays;
-    const BakeResult baked = bakeVisibility(caster, points, options);
-    std::vector<SurfacePoint> outside;
-    for (size_t i = 0; i < points.size(); ++i)
-        if (!baked.inside[i]) outside.push_back(points[i]);
-    if (outside.empty())
-        throw InputError("the mesh", "has no point outside of itself", "turn its faces outwards");
-    return outside;
-}
-
 }  // namespace
 
 ProjectionResult studyProjection(const Scene& scene, std::span<const Environment> environments,
                                  const ProjectionStudy& study) {
     PRT_CHECK(!study.orders.empty());
     const RayCaster caster(scene.positions, scene.indices);
-    const std::vector<SurfacePoint> points = outsidePoints(caster, scene, study);
+    const std::vector<SurfacePoint> points =
+        outsidePoints(caster, scene, size_t(std::max(study.population, study.points)), study.seed);
     const IrradianceJudge judge(
         caster, std::span(points).first(std::min(points.size(), size_t(study.points))), environments,
         study.tiltsDeg, *std::max_element(study.orders.begin(), study.orders.end()), study.seed);

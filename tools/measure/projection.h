@@ -3,7 +3,6 @@
 
 #include <cstdint>
 #include <span>
-#include <string>
 #include <vector>
 
 #include "precompute/io/environment_file.h"
@@ -13,10 +12,6 @@
 #include "precompute/rays/ray_caster.h"
 
 namespace prt::tools {
-
-/// Points uniform over the area of a mesh, the same for the same seed.
-/// @throws InputError  the mesh has no area
-std::vector<SurfacePoint> randomSurfacePoints(const Scene& scene, size_t count, uint64_t seed);
 
 /// Widest image that light is integrated over texel by texel; wider ones are halved first (means of 2×2
 /// texels).
