@@ -26,6 +26,9 @@ void setThreadCount(int threads) {
 
 int threadCount() { return gThreads > 0 ? gThreads : int(std::max(1u, std::thread::hardware_concurrency())); }
 
+ScopedThreadCount::ScopedThreadCount(int threads) : before_(gThreads) { setThreadCount(threads); }
+ScopedThreadCount::~ScopedThreadCount() { setThreadCount(before_); }
+
 void parallelFor(size_t count, size_t block, const std::function<void(size_t, size_t)>& body) {
     block = std::max<size_t>(block, 1);
     const size_t blocks = (count + block - 1) / block;

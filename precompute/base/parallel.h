@@ -14,9 +14,21 @@
 
 namespace prt {
 
-/// Threads that parallelFor uses; 0 means all cores. Call it before any parallel work.
+/// Threads that parallelFor uses; 0 means all cores. Not while parallel work runs.
 void setThreadCount(int threads);
 int threadCount();
+
+/// Another number of threads while the object lives, then what was set before. Not while parallel work runs.
+class ScopedThreadCount {
+  public:
+    explicit ScopedThreadCount(int threads);
+    ~ScopedThreadCount();
+    ScopedThreadCount(const ScopedThreadCount&) = delete;
+    ScopedThreadCount& operator=(const ScopedThreadCount&) = delete;
+
+  private:
+    int before_;  // as set: 0 for all cores
+};
 
 /// Calls body(begin, end) over consecutive blocks of [0, count) of `block` items each (the last may be
 /// shorter). Block boundaries do not depend on the number of threads. Exceptions (Interrupted too) reach the

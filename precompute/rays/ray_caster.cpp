@@ -3,18 +3,16 @@
 // Sec. 3.9], reduced to two bounds: one relative to the scene, one relative to the coordinates.
 #include "precompute/rays/ray_caster.h"
 
-#include <embree3/rtcore.h>
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
-#include <mutex>
-#include <vector>
 
 #include "precompute/base/check.h"
 #include "precompute/base/error.h"
+#include "precompute/rays/embree_internal.h"
 
 namespace prt {
 namespace {
@@ -42,39 +40,13 @@ RTCRay makeRay(const Vec3f& origin, const Vec3f& direction) {
     return ray;
 }
 
-}  // namespace
-
-struct RayCaster::State {
-    RTCDevice device = nullptr;
-    RTCScene scene = nullptr;
-    std::mutex errorMutex;
-    std::string error;
-    std::vector<Vec3f> positions;  // as given
-    std::vector<uint32_t> indices;
-    float extent = 0;
-    float scale = 1;  // power of two that brings the extent near 1
-
-    ~State() {
-        if (scene) rtcReleaseScene(scene);
-        if (device) rtcReleaseDevice(device);
-    }
-    void throwIfFailed() {
-        const RTCError code = rtcGetDeviceError(device);
-        std::lock_guard lock(errorMutex);
-        if (code == RTC_ERROR_NONE && error.empty()) return;
-        throw InputError("ray casting", error.empty() ? fmt::format("Embree error {}", int(code)) : error,
-                         code == RTC_ERROR_OUT_OF_MEMORY ? "use a mesh with fewer triangles" : "");
-    }
-    void occludedStream(RTCRay* rays, size_t count, RTCIntersectContextFlags flags, uint8_t* occluded) const {
-        RTCIntersectContext context;
-        rtcInitIntersectContext(&context);
-        context.flags = flags;
-        rtcOccluded1M(scene, &context, rays, unsigned(count), sizeof(RTCRay));
-        for (size_t i = 0; i < count; ++i) occluded[i] = rays[i].tfar < 0;
-    }
-};
-
-namespace {
+void occludedStream(RTCScene scene, RTCRay* rays, size_t count, uint8_t* occluded) {
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    context.flags = RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
+    rtcOccluded1M(scene, &context, rays, unsigned(count), sizeof(RTCRay));
+    for (size_t i = 0; i < count; ++i) occluded[i] = rays[i].tfar < 0;
+}
 
 void measure(std::span<const Vec3f> positions, std::span<const uint32_t> indices, float& extent,
              float& scale) {
@@ -107,43 +79,7 @@ RayCaster::RayCaster(std::span<const Vec3f> positions, std::span<const uint32_t>
     s.positions.assign(positions.begin(), positions.end());
     s.indices.assign(indices.begin(), indices.end());
 
-    s.device = rtcNewDevice(nullptr);
-    if (!s.device)
-        throw InputError("ray casting",
-                         fmt::format("Embree does not start (error {})", int(rtcGetDeviceError(nullptr))),
-                         "it needs an x86-64 processor with SSE2 and enough memory");
-    rtcSetDeviceErrorFunction(
-        s.device,
-        [](void* user, RTCError, const char* message) {
-            State& state = *static_cast<State*>(user);
-            std::lock_guard lock(state.errorMutex);
-            if (state.error.empty() && message) state.error = message;
-        },
-        &s);
-    s.scene = rtcNewScene(s.device);
-    // ROBUST alone: with COMPACT, and rays flagged COHERENT, Embree 3.13.5 can loop forever on AVX-512.
-    rtcSetSceneFlags(s.scene, RTC_SCENE_FLAG_ROBUST);
-    rtcSetSceneBuildQuality(s.scene, RTC_BUILD_QUALITY_MEDIUM);
-
-    if (!indices.empty()) {
-        const RTCGeometry geometry = rtcNewGeometry(s.device, RTC_GEOMETRY_TYPE_TRIANGLE);
-        // Embree allocates (and pads) these buffers itself.
-        auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(
-            geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(Vec3f), positions.size()));
-        auto* triangles = static_cast<uint32_t*>(rtcSetNewGeometryBuffer(
-            geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(uint32_t), indices.size() / 3));
-        if (vertices && triangles) {
-            for (size_t i = 0; i < positions.size(); ++i)
-                for (int k = 0; k < 3; ++k) vertices[3 * i + size_t(k)] = positions[i][k] * s.scale;
-            std::copy(indices.begin(), indices.end(), triangles);
-            rtcCommitGeometry(geometry);
-            rtcAttachGeometry(s.scene, geometry);
-        }
-        rtcReleaseGeometry(geometry);
-    }
-    s.throwIfFailed();
-    rtcCommitScene(s.scene);
-    s.throwIfFailed();
+    s.embree.build(positions, indices, s.scale, RTC_SCENE_FLAG_ROBUST);
 }
 
 RayCaster::~RayCaster() = default;
@@ -158,7 +94,7 @@ void RayCaster::occluded(std::span<const Vec3f> origins, const Vec3f& direction,
     for (size_t begin = 0; begin < origins.size(); begin += kStream) {
         const size_t count = std::min(kStream, origins.size() - begin);
         for (size_t i = 0; i < count; ++i) rays[i] = makeRay(origins[begin + i] * s.scale, direction);
-        s.occludedStream(rays.data(), count, RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT, &occluded[begin]);
+        occludedStream(s.embree.scene(), rays.data(), count, &occluded[begin]);
     }
 }
 
@@ -171,7 +107,7 @@ void RayCaster::occluded(const Vec3f& origin, std::span<const Vec3f> directions,
     for (size_t begin = 0; begin < directions.size(); begin += kStream) {
         const size_t count = std::min(kStream, directions.size() - begin);
         for (size_t i = 0; i < count; ++i) rays[i] = makeRay(start, directions[begin + i]);
-        s.occludedStream(rays.data(), count, RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT, &occluded[begin]);
+        occludedStream(s.embree.scene(), rays.data(), count, &occluded[begin]);
     }
 }
 
@@ -183,7 +119,7 @@ RayHit RayCaster::firstHit(const Vec3f& origin, const Vec3f& direction) const {
     query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
-    rtcIntersect1(s.scene, &context, &query);
+    rtcIntersect1(s.embree.scene(), &context, &query);
     RayHit hit;
     if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return hit;
     hit.triangle = query.hit.primID;
@@ -220,7 +156,7 @@ size_t RayCaster::triangleCount() const { return state_->indices.size() / 3; }
 float RayCaster::extent() const { return state_->extent; }
 
 std::string RayCaster::instructionSet() const {
-    const RTCDevice device = state_->device;
+    const RTCDevice device = state_->embree.device();
     if (rtcGetDeviceProperty(device, RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED)) return "AVX512";
     if (!rtcGetDeviceProperty(device, RTC_DEVICE_PROPERTY_NATIVE_RAY8_SUPPORTED)) return "SSE2";
     return __builtin_cpu_supports("avx2") ? "AVX2" : "AVX";

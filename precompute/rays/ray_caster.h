@@ -62,6 +62,7 @@ class RayCaster {
     std::string instructionSet() const;
 
   private:
+    friend class OcclusionLoop;
     struct State;
     std::unique_ptr<State> state_;
 };

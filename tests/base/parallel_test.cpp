@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <atomic>
 #include <mutex>
+#include <set>
 #include <stdexcept>
+#include <thread>
 #include <utility>
 
 #include "precompute/base/error.h"
@@ -100,6 +102,37 @@ TEST(ThreadCount, ZeroMeansAllCores) {
     EXPECT_EQ(threadCount(), 3);
     setThreadCount(0);
     EXPECT_GE(threadCount(), 1);
+}
+
+// The number of threads that a loop runs on, and that each scope leaves what it found.
+TEST(ThreadCount, ScopesNest) {
+    const auto threadsOfLoop = [] {
+        std::mutex mutex;
+        std::set<std::thread::id> seen;
+        parallelFor(200, 1, [&](size_t, size_t) {
+            const std::lock_guard lock(mutex);
+            seen.insert(std::this_thread::get_id());
+        });
+        return seen.size();
+    };
+    setThreadCount(3);
+    {
+        const ScopedThreadCount one(1);
+        EXPECT_EQ(threadCount(), 1);
+        EXPECT_EQ(threadsOfLoop(), 1u);
+        {
+            const ScopedThreadCount two(2);
+            EXPECT_EQ(threadCount(), 2);
+            EXPECT_LE(threadsOfLoop(), 2u);
+        }
+        EXPECT_EQ(threadCount(), 1);
+        EXPECT_EQ(threadsOfLoop(), 1u);
+    }
+    EXPECT_EQ(threadCount(), 3);
+    setThreadCount(0);
+    const int all = threadCount();
+    { const ScopedThreadCount two(2); }
+    EXPECT_EQ(threadCount(), all);
 }
 
 TEST(PeakResidentBytes, CountsBytes) {
