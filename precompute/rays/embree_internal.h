@@ -12,6 +12,18 @@
 
 namespace prt {
 
+/// Rays of one call of rtcOccluded1M: longer streams are no faster, and spill the first-level cache.
+inline constexpr size_t kRayStream = 128;
+/// Rays of rtcOccluded16.
+inline constexpr size_t kRayPacket = 16;
+
+inline RTCIntersectContext makeContext(RTCIntersectContextFlags flags) {
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    context.flags = flags;
+    return context;
+}
+
 /// A device with one scene of one triangle mesh.
 class EmbreeScene {
   public:
@@ -47,7 +59,8 @@ struct RayCaster::State {
     std::vector<Vec3f> positions;  // as given
     std::vector<uint32_t> indices;
     float extent = 0;
-    float scale = 1;  // power of two that brings the extent near 1
+    float scale = 1;     // power of two that brings the extent near 1
+    float meanEdge = 0;  // square root of the mean area of a triangle
 };
 
 }  // namespace prt

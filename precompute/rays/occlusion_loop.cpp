@@ -18,15 +18,7 @@ namespace {
 
 constexpr size_t kBlock = 256;         // near points that take one direction at a time
 constexpr size_t kRandomBlock = 1024;  // points of a thread whose rays go in random order
-constexpr size_t kPacket = 16;
 constexpr float kFar = std::numeric_limits<float>::infinity();
-
-RTCIntersectContext makeContext(RTCIntersectContextFlags flags) {
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    context.flags = flags;
-    return context;
-}
 
 void clear(RTCRay& ray) {
     ray = {};
@@ -80,8 +72,6 @@ const char* rayArrangementName(RayArrangement arrangement) {
             return "packet-point-major";
         case RayArrangement::PacketDirectionMajor:
             return "packet-direction-major";
-        case RayArrangement::PacketIncoherent:
-            return "packet-incoherent";
         case RayArrangement::StreamDirectionMajor:
             return "stream-direction-major";
     }
@@ -119,7 +109,7 @@ struct OcclusionLoop::State {
     uint64_t singleRandom(size_t begin, size_t end, uint32_t* blocked) const;
     uint64_t singles(size_t begin, size_t end, uint32_t* blocked) const;
     uint64_t pointPackets(size_t begin, size_t end, uint32_t* blocked) const;
-    uint64_t packets(size_t begin, size_t end, RTCIntersectContextFlags flags, uint32_t* blocked) const;
+    uint64_t packets(size_t begin, size_t end, uint32_t* blocked) const;
     uint64_t streams(size_t begin, size_t end, uint32_t* blocked) const;
     uint64_t cast(RayArrangement arrangement, size_t begin, size_t end, uint32_t* blocked) const;
 };
@@ -180,7 +170,7 @@ uint64_t OcclusionLoop::State::pointPackets(size_t begin, size_t end, uint32_t* 
     RTCIntersectContext context = makeContext(RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT);
     RTCRay16 packet;
     clear(packet);
-    alignas(64) std::array<int, kPacket> valid;
+    alignas(64) std::array<int, kRayPacket> valid;
     std::vector<uint16_t> facing(directionCount());
     uint64_t rays = 0;
     for (size_t i = begin; i < end; ++i) {
@@ -188,9 +178,9 @@ uint64_t OcclusionLoop::State::pointPackets(size_t begin, size_t end, uint32_t* 
         std::fill(std::begin(packet.org_x), std::end(packet.org_x), origins.x[i]);
         std::fill(std::begin(packet.org_y), std::end(packet.org_y), origins.y[i]);
         std::fill(std::begin(packet.org_z), std::end(packet.org_z), origins.z[i]);
-        for (size_t start = 0; start < count; start += kPacket) {
-            const size_t some = std::min(kPacket, count - start);
-            for (size_t lane = 0; lane < kPacket; ++lane) valid[lane] = lane < some ? -1 : 0;
+        for (size_t start = 0; start < count; start += kRayPacket) {
+            const size_t some = std::min(kRayPacket, count - start);
+            for (size_t lane = 0; lane < kRayPacket; ++lane) valid[lane] = lane < some ? -1 : 0;
             for (size_t lane = 0; lane < some; ++lane) {
                 const size_t k = facing[start + lane];
                 packet.dir_x[lane] = directions.x[k];
@@ -206,12 +196,11 @@ uint64_t OcclusionLoop::State::pointPackets(size_t begin, size_t end, uint32_t* 
     return rays;
 }
 
-uint64_t OcclusionLoop::State::packets(size_t begin, size_t end, RTCIntersectContextFlags flags,
-                                       uint32_t* blocked) const {
-    RTCIntersectContext context = makeContext(flags);
+uint64_t OcclusionLoop::State::packets(size_t begin, size_t end, uint32_t* blocked) const {
+    RTCIntersectContext context = makeContext(RTC_INTERSECT_CONTEXT_FLAG_COHERENT);
     RTCRay16 packet;
     clear(packet);
-    alignas(64) std::array<int, kPacket> valid;
+    alignas(64) std::array<int, kRayPacket> valid;
     std::array<uint16_t, kBlock> facing;
     uint64_t rays = 0;
     for (size_t k = 0; k < directionCount(); ++k) {
@@ -220,9 +209,9 @@ uint64_t OcclusionLoop::State::packets(size_t begin, size_t end, RTCIntersectCon
         std::fill(std::begin(packet.dir_x), std::end(packet.dir_x), d.x());
         std::fill(std::begin(packet.dir_y), std::end(packet.dir_y), d.y());
         std::fill(std::begin(packet.dir_z), std::end(packet.dir_z), d.z());
-        for (size_t start = 0; start < count; start += kPacket) {
-            const size_t some = std::min(kPacket, count - start);
-            for (size_t lane = 0; lane < kPacket; ++lane) valid[lane] = lane < some ? -1 : 0;
+        for (size_t start = 0; start < count; start += kRayPacket) {
+            const size_t some = std::min(kRayPacket, count - start);
+            for (size_t lane = 0; lane < kRayPacket; ++lane) valid[lane] = lane < some ? -1 : 0;
             for (size_t lane = 0; lane < some; ++lane) {
                 const size_t i = begin + facing[start + lane];
                 packet.org_x[lane] = origins.x[i];
@@ -241,26 +230,28 @@ uint64_t OcclusionLoop::State::packets(size_t begin, size_t end, RTCIntersectCon
 
 uint64_t OcclusionLoop::State::streams(size_t begin, size_t end, uint32_t* blocked) const {
     RTCIntersectContext context = makeContext(RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT);
-    std::array<RTCRay, kBlock> stream;
+    std::array<RTCRay, kRayStream> stream;
     for (RTCRay& ray : stream) clear(ray);
     std::array<uint16_t, kBlock> facing;
     uint64_t rays = 0;
     for (size_t k = 0; k < directionCount(); ++k) {
         const Vec3f d = direction(k);
         const size_t count = normals.listAcute(begin, end - begin, d, facing.data());
-        if (count == 0) continue;
-        for (size_t j = 0; j < count; ++j) {
-            const size_t i = begin + facing[j];
-            stream[j].org_x = origins.x[i];
-            stream[j].org_y = origins.y[i];
-            stream[j].org_z = origins.z[i];
-            stream[j].dir_x = d.x();
-            stream[j].dir_y = d.y();
-            stream[j].dir_z = d.z();
-            stream[j].tfar = kFar;
+        for (size_t start = 0; start < count; start += kRayStream) {
+            const size_t some = std::min(kRayStream, count - start);
+            for (size_t j = 0; j < some; ++j) {
+                const size_t i = begin + facing[start + j];
+                stream[j].org_x = origins.x[i];
+                stream[j].org_y = origins.y[i];
+                stream[j].org_z = origins.z[i];
+                stream[j].dir_x = d.x();
+                stream[j].dir_y = d.y();
+                stream[j].dir_z = d.z();
+                stream[j].tfar = kFar;
+            }
+            rtcOccluded1M(scene, &context, stream.data(), unsigned(some), sizeof(RTCRay));
+            for (size_t j = 0; j < some; ++j) blocked[begin + facing[start + j]] += stream[j].tfar < 0;
         }
-        rtcOccluded1M(scene, &context, stream.data(), unsigned(count), sizeof(RTCRay));
-        for (size_t j = 0; j < count; ++j) blocked[begin + facing[j]] += stream[j].tfar < 0;
         rays += count;
     }
     return rays;
@@ -276,9 +267,7 @@ uint64_t OcclusionLoop::State::cast(RayArrangement arrangement, size_t begin, si
         case RayArrangement::PacketPointMajor:
             return pointPackets(begin, end, blocked);
         case RayArrangement::PacketDirectionMajor:
-            return packets(begin, end, RTC_INTERSECT_CONTEXT_FLAG_COHERENT, blocked);
-        case RayArrangement::PacketIncoherent:
-            return packets(begin, end, RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT, blocked);
+            return packets(begin, end, blocked);
         case RayArrangement::StreamDirectionMajor:
             return streams(begin, end, blocked);
     }

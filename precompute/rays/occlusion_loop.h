@@ -20,15 +20,13 @@ enum class RayArrangement {
     SingleDirectionMajor,  ///< one by one, a direction over near points
     PacketPointMajor,      ///< 16 at once, a point and near directions
     PacketDirectionMajor,  ///< 16 at once, a direction and near points, flagged coherent
-    PacketIncoherent,      ///< the same, not flagged coherent
-    StreamDirectionMajor,  ///< up to 256 at once, a direction and near points, not flagged coherent
+    StreamDirectionMajor,  ///< up to 128 at once, a direction and near points, not flagged coherent
 };
 inline constexpr std::array kRayArrangements{
-    RayArrangement::SingleRandom,     RayArrangement::SingleDirectionMajor,
-    RayArrangement::PacketPointMajor, RayArrangement::PacketDirectionMajor,
-    RayArrangement::PacketIncoherent, RayArrangement::StreamDirectionMajor};
+    RayArrangement::SingleRandom, RayArrangement::SingleDirectionMajor, RayArrangement::PacketPointMajor,
+    RayArrangement::PacketDirectionMajor, RayArrangement::StreamDirectionMajor};
 /// "single-random", "single-direction-major", "packet-point-major", "packet-direction-major",
-/// "packet-incoherent", "stream-direction-major".
+/// "stream-direction-major".
 const char* rayArrangementName(RayArrangement arrangement);
 
 struct OcclusionCount {
@@ -45,7 +43,7 @@ class OcclusionLoop {
     /// @param caster      its scene is used; must outlive the loop
     /// @param origins     [N] starts of rays, scene units, as RayCaster::offsetOrigin gives them
     /// @param normals     [N] unit, the horizon; zero: the point casts no ray
-    /// @param directions  [K] unit
+    /// @param directions  [K] unit, at most 65,535
     /// @param robust      false: another scene of the same triangles is built whose intersection tests are
     ///                    not watertight, to learn what robustness costs
     /// @throws InputError  no memory

@@ -17,36 +17,63 @@
 namespace prt {
 namespace {
 
-// One stream of rays; larger ones gain nothing and spill the first-level cache.
-constexpr size_t kStream = 256;
-
 // Embree ignores coordinates beyond this (its FLT_LARGE is 1.8e18).
 constexpr float kLargestCoordinate = 1e18f;
 
-RTCRay makeRay(const Vec3f& origin, const Vec3f& direction) {
-    RTCRay ray;
+constexpr float kFar = std::numeric_limits<float>::infinity();
+
+// What changes from one query to the next; Embree itself writes nothing but tfar.
+void setRay(RTCRay& ray, const Vec3f& origin, const Vec3f& direction) {
     ray.org_x = origin.x();
     ray.org_y = origin.y();
     ray.org_z = origin.z();
-    ray.tnear = 0;
     ray.dir_x = direction.x();
     ray.dir_y = direction.y();
     ray.dir_z = direction.z();
-    ray.time = 0;
-    ray.tfar = std::numeric_limits<float>::infinity();
+    ray.tfar = kFar;
+}
+
+RTCRay makeRay(const Vec3f& origin, const Vec3f& direction) {
+    RTCRay ray = {};
+    ray.tfar = kFar;
     ray.mask = ~0u;
-    ray.id = 0;
-    ray.flags = 0;
+    setRay(ray, origin, direction);
     return ray;
 }
 
-void occludedStream(RTCScene scene, RTCRay* rays, size_t count, uint8_t* occluded) {
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    context.flags = RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
-    rtcOccluded1M(scene, &context, rays, unsigned(count), sizeof(RTCRay));
-    for (size_t i = 0; i < count; ++i) occluded[i] = rays[i].tfar < 0;
-}
+// Kept by each thread, so that most of a ray is written once.
+struct Stream {
+    std::array<RTCRay, kRayStream> rays;
+    Stream() { rays.fill(makeRay(Vec3f::Zero(), Vec3f::Zero())); }
+
+    // The first `count` rays.
+    void trace(RTCScene scene, size_t count, uint8_t* occluded) {
+        RTCIntersectContext context = makeContext(RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT);
+        rtcOccluded1M(scene, &context, rays.data(), unsigned(count), sizeof(RTCRay));
+        for (size_t i = 0; i < count; ++i) occluded[i] = rays[i].tfar < 0;
+    }
+};
+
+struct Packet {
+    RTCRay16 rays = {};
+    alignas(64) std::array<int, kRayPacket> valid{};
+    Packet() { std::fill(std::begin(rays.mask), std::end(rays.mask), ~0u); }
+
+    void setDirection(const Vec3f& direction) {
+        std::fill(std::begin(rays.dir_x), std::end(rays.dir_x), direction.x());
+        std::fill(std::begin(rays.dir_y), std::end(rays.dir_y), direction.y());
+        std::fill(std::begin(rays.dir_z), std::end(rays.dir_z), direction.z());
+    }
+    void setOrigins(std::span<const Vec3f> origins, float scale) {
+        for (size_t i = 0; i < kRayPacket; ++i) valid[i] = i < origins.size() ? -1 : 0;
+        for (size_t i = 0; i < origins.size(); ++i) {
+            rays.org_x[i] = origins[i].x() * scale;
+            rays.org_y[i] = origins[i].y() * scale;
+            rays.org_z[i] = origins[i].z() * scale;
+            rays.tfar[i] = kFar;
+        }
+    }
+};
 
 void measure(std::span<const Vec3f> positions, std::span<const uint32_t> indices, float& extent,
              float& scale) {
@@ -69,6 +96,18 @@ void measure(std::span<const Vec3f> positions, std::span<const uint32_t> indices
     scale = std::ldexp(1.0f, std::clamp(-exponent, -100, 100));
 }
 
+// Square root of the mean area of a triangle.
+float meanEdge(std::span<const Vec3f> positions, std::span<const uint32_t> indices) {
+    double area = 0;
+    for (size_t i = 0; i < indices.size(); i += 3) {
+        const Vec3d a = positions[indices[i]].cast<double>();
+        area += 0.5 * (positions[indices[i + 1]].cast<double>() - a)
+                          .cross(positions[indices[i + 2]].cast<double>() - a)
+                          .norm();
+    }
+    return indices.empty() ? 0.0f : float(std::sqrt(area / double(indices.size() / 3)));
+}
+
 }  // namespace
 
 RayCaster::RayCaster(std::span<const Vec3f> positions, std::span<const uint32_t> indices)
@@ -76,6 +115,7 @@ RayCaster::RayCaster(std::span<const Vec3f> positions, std::span<const uint32_t>
     PRT_CHECK_EQ(indices.size() % 3, size_t(0));
     State& s = *state_;
     measure(positions, indices, s.extent, s.scale);
+    s.meanEdge = meanEdge(positions, indices);
     s.positions.assign(positions.begin(), positions.end());
     s.indices.assign(indices.begin(), indices.end());
 
@@ -89,26 +129,48 @@ RayCaster& RayCaster::operator=(RayCaster&&) noexcept = default;
 void RayCaster::occluded(std::span<const Vec3f> origins, const Vec3f& direction,
                          std::span<uint8_t> occluded) const {
     PRT_CHECK_LE(origins.size(), occluded.size());
+    thread_local Stream stream;
     const State& s = *state_;
-    std::array<RTCRay, kStream> rays;
-    for (size_t begin = 0; begin < origins.size(); begin += kStream) {
-        const size_t count = std::min(kStream, origins.size() - begin);
-        for (size_t i = 0; i < count; ++i) rays[i] = makeRay(origins[begin + i] * s.scale, direction);
-        occludedStream(s.embree.scene(), rays.data(), count, &occluded[begin]);
+    for (size_t begin = 0; begin < origins.size(); begin += kRayStream) {
+        const size_t count = std::min(kRayStream, origins.size() - begin);
+        for (size_t i = 0; i < count; ++i) setRay(stream.rays[i], origins[begin + i] * s.scale, direction);
+        stream.trace(s.embree.scene(), count, &occluded[begin]);
     }
 }
 
 void RayCaster::occluded(const Vec3f& origin, std::span<const Vec3f> directions,
                          std::span<uint8_t> occluded) const {
     PRT_CHECK_LE(directions.size(), occluded.size());
+    thread_local Stream stream;
     const State& s = *state_;
     const Vec3f start = origin * s.scale;
-    std::array<RTCRay, kStream> rays;
-    for (size_t begin = 0; begin < directions.size(); begin += kStream) {
-        const size_t count = std::min(kStream, directions.size() - begin);
-        for (size_t i = 0; i < count; ++i) rays[i] = makeRay(start, directions[begin + i]);
-        occludedStream(s.embree.scene(), rays.data(), count, &occluded[begin]);
+    for (size_t begin = 0; begin < directions.size(); begin += kRayStream) {
+        const size_t count = std::min(kRayStream, directions.size() - begin);
+        for (size_t i = 0; i < count; ++i) setRay(stream.rays[i], start, directions[begin + i]);
+        stream.trace(s.embree.scene(), count, &occluded[begin]);
     }
+}
+
+void RayCaster::occludedPackets(std::span<const Vec3f> origins, const Vec3f& direction,
+                                std::span<uint8_t> occluded) const {
+    PRT_CHECK_LE(origins.size(), occluded.size());
+    thread_local Packet packet;
+    const State& s = *state_;
+    RTCIntersectContext context = makeContext(RTC_INTERSECT_CONTEXT_FLAG_COHERENT);
+    packet.setDirection(direction);
+    for (size_t begin = 0; begin < origins.size(); begin += kRayPacket) {
+        const size_t count = std::min(kRayPacket, origins.size() - begin);
+        packet.setOrigins(origins.subspan(begin, count), s.scale);
+        rtcOccluded16(packet.valid.data(), s.embree.scene(), &context, &packet.rays);
+        for (size_t i = 0; i < count; ++i) occluded[begin + i] = packet.rays.tfar[i] < 0;
+    }
+}
+
+bool RayCaster::packetsAreFaster(float spacing) const {
+    const std::string isa = instructionSet();
+    // Where both were equally fast, in mean edges of triangles: 0.45 to 0.7 and 0.2 to 0.45 on three meshes.
+    const float limit = isa == "AVX512" ? 0.45f : isa == "AVX2" ? 0.2f : 0.0f;
+    return spacing < limit * state_->meanEdge;
 }
 
 RayHit RayCaster::firstHit(const Vec3f& origin, const Vec3f& direction) const {
@@ -117,8 +179,7 @@ RayHit RayCaster::firstHit(const Vec3f& origin, const Vec3f& direction) const {
     query.ray = makeRay(origin * s.scale, direction);
     query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
+    RTCIntersectContext context = makeContext(RTC_INTERSECT_CONTEXT_FLAG_NONE);
     rtcIntersect1(s.embree.scene(), &context, &query);
     RayHit hit;
     if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return hit;

@@ -29,9 +29,24 @@ class RayCaster {
     RayCaster& operator=(RayCaster&&) noexcept;
 
     /// One direction from many near points: occluded[i] = 1 when anything lies on the ray from origins[i].
-    /// @param origins     [N] already offset (offsetOrigin), near each other for speed, N ≤ 4096
+    /// What comes out for a ray does not depend on the other rays.
+    /// @param origins     [N] already offset (offsetOrigin), scene units, near each other for speed
+    /// @param direction   unit
     /// @param occluded    [N] out
+    /// @source streams of rays [Wald2014]
     void occluded(std::span<const Vec3f> origins, const Vec3f& direction, std::span<uint8_t> occluded) const;
+
+    /// As occluded, 16 origins at a time: faster where packetsAreFaster. Whether a ray that grazes an edge
+    /// within rounding is blocked may depend on the others of its 16 (of the origins from a multiple of 16
+    /// on): seen in one ray of a thousand that were aimed at edges, in none of millions from surfaces.
+    /// @source packets of rays, their common frustum tested first [Wald2014]
+    void occludedPackets(std::span<const Vec3f> origins, const Vec3f& direction,
+                         std::span<uint8_t> occluded) const;
+
+    /// Whether occludedPackets is the faster of the two, by what was measured; the same answer on every
+    /// machine of one instruction set.
+    /// @param spacing  between neighbouring origins, scene units
+    bool packetsAreFaster(float spacing) const;
 
     /// Many directions from one point.
     void occluded(const Vec3f& origin, std::span<const Vec3f> directions, std::span<uint8_t> occluded) const;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <numeric>
 #include <random>
 
 #include "precompute/base/error.h"
@@ -110,6 +111,77 @@ TEST(RayCaster, StreamsAgreeWithSingleRays) {
         for (size_t k = 0; k < many.size(); ++k)
             EXPECT_EQ(blocked[k], caster.firstHit(origins[i], many[k]).triangle != 0xffffffffu ? 1 : 0);
     }
+}
+
+// What comes out for a ray must not depend on the others that are cast with it: here rays along the faces,
+// edges and diagonals of boxes on a lattice, in different company.
+TEST(RayCaster, StreamsDoNotDependOnCompany) {
+    std::mt19937 random(8);
+    const auto lattice = [&](int from, int to) {
+        return float(from + int(random() % uint32_t(to - from + 1)));
+    };
+    Mesh mesh;
+    for (int i = 0; i < 100; ++i) {
+        const Vec3f low(lattice(0, 15), lattice(0, 15), lattice(0, 15));
+        mesh.add(shapes::box(low, low + Vec3f(lattice(1, 3), lattice(1, 3), lattice(1, 3))));
+    }
+    const RayCaster caster(mesh.positions, mesh.indices);
+    size_t hits = 0;
+    for (int round = 0; round < 200; ++round) {
+        Vec3f direction(lattice(-2, 2), lattice(-2, 2), lattice(-2, 2));
+        if (direction.isZero()) direction.y() = 1;
+        direction.normalize();
+        std::vector<Vec3f> origins(300), shuffled;
+        for (Vec3f& origin : origins) origin = {lattice(-3, 18), lattice(-3, 18), lattice(-3, 18)};
+        std::vector<size_t> order(origins.size());
+        std::iota(order.begin(), order.end(), size_t(0));
+        std::shuffle(order.begin(), order.end(), random);
+        order.resize(170);
+        for (const size_t i : order) shuffled.push_back(origins[i]);
+        std::vector<uint8_t> all(origins.size()), some(shuffled.size()), alone(1);
+        caster.occluded(origins, direction, all);
+        caster.occluded(shuffled, direction, some);
+        for (size_t j = 0; j < order.size(); ++j) ASSERT_EQ(some[j], all[order[j]]) << round;
+        for (size_t i = 0; i < 20; ++i) {
+            caster.occluded(std::span(origins).subspan(i, 1), direction, alone);
+            ASSERT_EQ(alone[0], all[i]) << round;
+        }
+        hits += size_t(std::count(all.begin(), all.end(), 1));
+    }
+    EXPECT_GT(hits, 20000u);
+    EXPECT_LT(hits, 50000u);
+}
+
+// Rays from surfaces in directions aligned with nothing: packets find what streams find.
+TEST(RayCaster, PacketsAgreeWithStreams) {
+    Mesh mesh = shapes::heightField(
+        60, [](double x, double z) { return 0.2 * std::sin(11 * x) * std::cos(9 * z) + 0.1 * x; });
+    mesh.add(shapes::box({-0.3f, 0.3f, -0.2f}, {0.2f, 0.5f, 0.4f}));
+    const RayCaster caster(mesh.positions, mesh.indices);
+    size_t hits = 0, rays = 0;
+    for (const size_t count : {size_t(0), size_t(1), size_t(16), size_t(17), size_t(255), size_t(1000)})
+        for (const Vec3f& direction : directions(60, unsigned(count))) {
+            std::vector<Vec3f> origins;
+            for (size_t i = 0; i < count; ++i)
+                origins.push_back(caster.offsetOrigin(mesh.point(7 * i, 0.3, 0.4), mesh.normal(7 * i)));
+            std::vector<uint8_t> streams(count, 7), packets(count, 7);
+            caster.occluded(origins, direction, streams);
+            caster.occludedPackets(origins, direction, packets);
+            EXPECT_EQ(streams, packets) << count;
+            hits += size_t(std::count(streams.begin(), streams.end(), 1));
+            rays += count;
+        }
+    EXPECT_GT(hits, rays / 5);
+    EXPECT_LT(hits, rays * 4 / 5);
+}
+
+TEST(RayCaster, PacketsAreForOriginsCloserThanTriangles) {
+    const Mesh mesh = shapes::floorSquare(1);  // two triangles of area 2
+    const RayCaster caster(mesh.positions, mesh.indices);
+    EXPECT_FALSE(caster.packetsAreFaster(1.0f));
+    const std::string isa = caster.instructionSet();
+    EXPECT_EQ(caster.packetsAreFaster(0.01f), isa == "AVX512" || isa == "AVX2");
+    EXPECT_FALSE(RayCaster({}, {}).packetsAreFaster(0.01f));
 }
 
 TEST(RayCaster, NoRayPassesBetweenFaces) {
