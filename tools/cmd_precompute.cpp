@@ -1,6 +1,7 @@
 // prt precompute: mesh file -> bundle.
 #include <fmt/format.h>
 
+#include "precompute/base/error.h"
 #include "precompute/io/projection_attributes.h"
 #include "precompute/math/sh.h"
 #include "precompute/visibility/bake.h"
@@ -13,7 +14,11 @@ namespace prt::tools {
 namespace {
 
 Report toReport(const PrecomputeSettings& settings, const PrecomputeReport& result) {
-    Report validity, repairs, report;
+    Report validity, repairs, stages, report;
+    stages.set("set_up", result.stages.setUp)
+        .set("trace", result.stages.trace)
+        .set("project", result.stages.project)
+        .set("inside", result.stages.inside);
     for (int i = 0; i < kValidityCount; ++i)
         validity.set(validityName(Validity(i)), uint64_t(result.validity[size_t(i)]));
     for (const auto& [kind, count] : result.repairs) repairs.set(kind, uint64_t(count));
@@ -30,6 +35,9 @@ Report toReport(const PrecomputeSettings& settings, const PrecomputeReport& resu
         .set("trace_seconds", result.traceSeconds)
         .set("seconds", result.seconds)
         .set("mean_ao", result.meanAo)
+        .set("sampling_error", result.errorRms)
+        .set("sampling_error_relative", result.relativeError)
+        .set("stage_seconds", stages)
         .set("peak_rss_bytes", uint64_t(result.peakResidentBytes))
         .set("embree_isa", result.instructionSet)
         .set("validity", validity)
@@ -62,8 +70,13 @@ void runPrecomputeCommand(int argc, char** argv) {
     line.integer("--texels", settings.texels, 16, 8192, "edge of the square atlas, texels");
     line.integer("--order", settings.shOrder, 1, kMaxBundleShOrder,
                  "number of SH bands n (n*n coefficients)");
-    line.integer("--rays", settings.rays, 1, kMaxBakeRays,
-                 "directions over the sphere; those above a point's horizon are traced");
+    line.real("--error", settings.error, 1e-4, 1,
+              "RMS error of irradiance that a point may have, as a share of what an open point receives: "
+              "directions are refined along silhouettes until nine of ten are below it");
+    int rays = 1024;
+    line.integer("--rays", rays, 1, kMaxBakeRays,
+                 "instead of --error: so many directions over the sphere for every point; those above its "
+                 "horizon are traced");
     line.choice("--projection", projection, {"irradiance", "plain"},
                 "least squares of the irradiance that shading normals receive, or of visibility itself");
     line.real("--uv-scale", settings.load.uvScale, 1e-6, 1e9,
@@ -72,6 +85,12 @@ void runPrecomputeCommand(int argc, char** argv) {
               "tangent-space normal map (+Y up; PNG, JPEG, WebP) for materials that have none");
     if (!line.parse(argc, argv)) return;
     if (projection == projectionName(ProjectionKind::Plain)) settings.projection = kPlainProjection;
+    if (line.isGiven("--rays")) {
+        if (line.isGiven("--error"))
+            throw UsageError("--rays", "cannot go with --error",
+                             "give the number of directions or the error, not both");
+        settings.rays = rays;
+    }
 
     const PrecomputeReport result = runPrecompute(settings);
     if (line.common().json != "-") {
@@ -80,6 +99,9 @@ void runPrecomputeCommand(int argc, char** argv) {
             settings.bundlePath, result.points, settings.perVertex ? "vertices" : "texels",
             double(result.rays) * 1e-6, result.traceSeconds, result.raysPerSecond * 1e-6, result.seconds,
             result.meanAo);
+        fmt::print(
+            "sampling error of irradiance: {:.2g} of an open point's, {:.2g} of what points receive (RMS)\n",
+            result.errorRms, result.relativeError);
         if (!settings.perVertex && result.atlasMade)
             fmt::print("atlas: {} charts, {:.0f} % used, {:.3g} texels per unit\n", result.atlas.charts,
                        100 * result.atlas.utilisation, result.atlas.texelsPerUnit);

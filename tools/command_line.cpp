@@ -115,6 +115,7 @@ bool CommandLine::parse(int argc, char** argv) {
     return true;
 }
 
+bool CommandLine::isGiven(const std::string& name) const { return state_->app.count(name) > 0; }
 const CommonOptions& CommandLine::common() const { return state_->common; }
 
 namespace {

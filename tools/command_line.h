@@ -39,6 +39,8 @@ class CommandLine {
     /// @throws UsageError
     bool parse(int argc, char** argv);
     const CommonOptions& common() const;
+    /// Whether an option stood on the command line, by one of its names.
+    bool isGiven(const std::string& name) const;
 
   private:
     struct State;

@@ -139,6 +139,7 @@ void writeVisibilityFile(const std::string& path, const VisibilityMap& map) {
     const int coefficients = map.shOrder * map.shOrder;
     const PaddedPoints values(map.coefficients, map.grid, size_t(coefficients));
     const PaddedPoints ao(map.ao, map.grid, 1);
+    const PaddedPoints error(map.error.empty() ? map.ao : map.error, map.grid, 1);
     const PaddedPoints validity(map.validity, map.grid, 1);
     PRT_CHECK_EQ(map.normals.size(), map.grid.count);
     std::vector<Vec3f> normals(map.normals);
@@ -153,6 +154,8 @@ void writeVisibilityFile(const std::string& path, const VisibilityMap& map) {
     addInterleaved(part.channels, indexedNames("V", coefficients), ExrType::Float, values.data(), part.width,
                    size_t(coefficients));
     addInterleaved(part.channels, {"ao"}, ExrType::Float, ao.data(), part.width, 1);
+    if (!map.error.empty())
+        addInterleaved(part.channels, {"error"}, ExrType::Float, error.data(), part.width, 1);
     addInterleaved(part.channels, kNormalNames, ExrType::Float, normals[0].data(), part.width, 3);
     addInterleaved(part.channels, {"validity"}, ExrType::Uint, validity.data(), part.width, 1);
     writeExr(path, {part});
@@ -182,11 +185,16 @@ VisibilityMap readVisibilityFile(const std::string& path) {
     addInterleaved(channels, names, ExrType::Float, map.coefficients.data(), part.width,
                    size_t(coefficients));
     addInterleaved(channels, {"ao"}, ExrType::Float, map.ao.data(), part.width, 1);
+    if (part.channels.contains("error")) {
+        map.error.resize(pixels);
+        addInterleaved(channels, {"error"}, ExrType::Float, map.error.data(), part.width, 1);
+    }
     addInterleaved(channels, kNormalNames, ExrType::Float, map.normals[0].data(), part.width, 3);
     addInterleaved(channels, {"validity"}, ExrType::Uint, map.validity.data(), part.width, 1);
     reader.read(0, channels);
     map.coefficients.resize(count * size_t(coefficients));
     map.ao.resize(count);
+    if (!map.error.empty()) map.error.resize(count);
     map.normals.resize(count);
     map.validity.resize(count);
     checkValidity(map.validity, path);

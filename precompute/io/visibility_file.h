@@ -41,15 +41,19 @@ PointGrid vertexGrid(size_t vertexCount);
 struct VisibilityMap {
     PointGrid grid;
     int shOrder = 0;
-    std::vector<float> coefficients;                ///< [count×n²]
-    std::vector<Validity> validity;                 ///< [count]
-    std::vector<float> ao;                          ///< [count] cosine-weighted, 1 = open
-    std::vector<Vec3f> normals;                     ///< [count] geometric, world
+    std::vector<float> coefficients;  ///< [count×n²]
+    std::vector<Validity> validity;   ///< [count]
+    std::vector<float> ao;            ///< [count] cosine-weighted, 1 = open
+    std::vector<Vec3f> normals;       ///< [count] geometric, world
+    /// [count] estimated RMS sampling error of irradiance, as a share of what an open point receives; empty:
+    /// not known (files of older versions)
+    std::vector<float> error;
     Projection projection = kPlainProjection;       ///< how the coefficients were made
     std::map<std::string, std::string> attributes;  ///< any more, written as EXR string attributes
 };
 
-/// Channels V.00…V.NN (zero-padded shIndex), ao, normal.X/Y/Z (float), validity (uint); ZIP, scanlines.
+/// Channels V.00…V.NN (zero-padded shIndex), ao, error, normal.X/Y/Z (float), validity (uint); ZIP,
+/// scanlines.
 /// @throws OutputError
 void writeVisibilityFile(const std::string& path, const VisibilityMap& map);
 /// Checks conventions, channels and sizes before it allocates.

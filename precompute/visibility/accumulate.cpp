@@ -82,14 +82,43 @@ void addWeightedTableRows(const float* table, size_t stride, const uint16_t* row
 }
 
 PRT_TARGET_CLONES
-void weighRows(const DirectionColumns& directions, size_t directionCount, const float* normal,
-               const CosineTable& f, const uint16_t* rows, size_t rowCount, float* cosines, float* weights) {
-    const float *x = directions.x, *y = directions.y, *z = directions.z, *values = f.values();
-    const float nx = normal[0], ny = normal[1], nz = normal[2], half = 0.5f * float(f.steps());
-    for (size_t k = 0; k < directionCount; ++k) {
+std::array<double, 2> cosinesAbout(const DirectionColumns& directions, size_t count, const float* normal,
+                                   float* cosines) {
+    const float *x = directions.x, *y = directions.y, *z = directions.z;
+    const float nx = normal[0], ny = normal[1], nz = normal[2];
+    for (size_t k = 0; k < count; ++k) {
         const float cosine = nx * x[k] + ny * y[k] + nz * z[k];
         cosines[k] = cosine < -1 ? -1 : cosine > 1 ? 1 : cosine;
     }
+    const size_t padded = (count + kLanes - 1) / kLanes * kLanes;
+    for (size_t k = count; k < padded; ++k) cosines[k] = 0;
+    double partial[kLanes] = {};
+    for (size_t k = 0; k < padded; k += kLanes)
+        for (size_t lane = 0; lane < kLanes; ++lane)
+            partial[lane] += double(cosines[k + lane] > 0 ? cosines[k + lane] : 0.0f);
+    std::array<double, 2> sums{};
+    for (size_t lane = 0; lane < kLanes; ++lane) sums[lane % 2] += partial[lane];
+    return sums;
+}
+
+double sumOfCosines(const float* cosines, const uint16_t* rows, size_t rowCount) {
+    // Several sums side by side: one would wait for its own additions.
+    std::array<double, 4> partial{};
+    size_t j = 0;
+    for (; j + 4 <= rowCount; j += 4)
+        for (size_t lane = 0; lane < 4; ++lane) {
+            const float cosine = cosines[rows[j + lane]];
+            partial[lane] += double(cosine > 0 ? cosine : 0.0f);
+        }
+    for (; j < rowCount; ++j) partial[0] += double(cosines[rows[j]] > 0 ? cosines[rows[j]] : 0.0f);
+    return (partial[0] + partial[1]) + (partial[2] + partial[3]);
+}
+
+PRT_TARGET_CLONES
+void weighRows(const CosineTable& f, const float* cosines, const uint16_t* rows, size_t rowCount,
+               float* weights) {
+    const float* values = f.values();
+    const float half = 0.5f * float(f.steps());
     for (size_t j = 0; j < rowCount; ++j) {
         const float place = (cosines[rows[j]] + 1) * half;
         const int step = int(place);

@@ -2,6 +2,7 @@
 // in a fixed order, so the same bits on every machine.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -55,11 +56,20 @@ struct DirectionColumns {
     const float *x, *y, *z;
 };
 
-/// cosines[k] = n·ω_k, clamped to [−1, 1], of all directions, and weights[j] = f(cosines[rows[j]]).
-/// @param directionCount  at least 1
-/// @param normal          [3]
-/// @param cosines         [directionCount]   @param weights  [rowCount]
-void weighRows(const DirectionColumns& directions, size_t directionCount, const float* normal,
-               const CosineTable& f, const uint16_t* rows, size_t rowCount, float* cosines, float* weights);
+/// cosines[k] = n·ω_k, clamped to [−1, 1].
+/// @param normal   [3]
+/// @param cosines  [count, rounded up to a multiple of 16] out
+/// @return sums of max(0, cosine) over even and over odd k, in double: what an open point sees is then the
+/// whole of it, whatever the order of the sums
+std::array<double, 2> cosinesAbout(const DirectionColumns& directions, size_t count, const float* normal,
+                                   float* cosines);
+
+/// Σ_j max(0, cosines[rows[j]])
+double sumOfCosines(const float* cosines, const uint16_t* rows, size_t rowCount);
+
+/// weights[j] = f(cosines[rows[j]])
+/// @param weights  [rowCount] out
+void weighRows(const CosineTable& f, const float* cosines, const uint16_t* rows, size_t rowCount,
+               float* weights);
 
 }  // namespace prt

@@ -14,6 +14,7 @@
 #include "precompute/base/error.h"
 #include "precompute/base/parallel.h"
 #include "precompute/math/directions.h"
+#include "precompute/visibility/find_inside.h"
 #include "precompute/visibility/trace_blocks.h"
 
 namespace prt {
@@ -97,21 +98,16 @@ constexpr size_t kSpreadStep = 25;  // odd, so that it meets all of a power of t
 // A sub-point of which so many rays met no back of a face is outside: from inside half or more would have.
 constexpr int kOpenRays = 6;
 
-// Whether most rays that hit anything hit the back of a face (as for whole items, with fewer rays).
+// As for whole items, with fewer rays.
 bool looksHidden(const RayCaster& caster, const SurfacePoint& point, std::span<const Vec3f> directions,
                  std::span<const uint8_t> doubleSided) {
-    const Vec3f origin = caster.offsetOrigin(point.position, point.normal);
-    int rays = 0, hits = 0, backs = 0;
+    InsideCount count;
     for (const Vec3f& direction : directions) {
         if (!(point.normal.dot(direction) > 0)) continue;
-        if (rays >= kOpenRays && backs == 0) return false;
-        ++rays;
-        const RayHit hit = caster.firstHit(origin, direction);
-        if (hit.triangle == RayHit{}.triangle) continue;
-        ++hits;
-        backs += hit.backFace && (doubleSided.empty() || !doubleSided[hit.triangle]);
+        if (count.rays >= kOpenRays && count.backs == 0) return false;
+        count.add(caster, point, direction, doubleSided);
     }
-    return backs * 2 > hits && hits * 4 >= rays;
+    return count.isInside();
 }
 
 // The spiral of directions in an order in which every few of them are spread over the sphere.
@@ -140,19 +136,6 @@ std::vector<uint8_t> findHiddenParts(const RayCaster& caster, const TexelSurface
 struct TexelItems {
     std::vector<SurfacePoint> points;
     std::vector<uint32_t> firstPoint, shareEnd;
-};
-
-// Shares of one item's sub-points as the upper ends of ranges of [0, 2^32).
-class ShareEnds {
-  public:
-    explicit ShareEnds(double sum) : scale_(4294967296.0 / sum) {}
-    uint32_t next(double share) {
-        passed_ += share;
-        return uint32_t(std::min(passed_ * scale_, 4294967295.0));
-    }
-
-  private:
-    double scale_, passed_ = 0;
 };
 
 // Parts of each texel that can be seen, all where none can; whole texels that nothing hides keep one point.
@@ -286,14 +269,17 @@ BakeResult bakeVertexVisibility(const RayCaster& caster, const VertexPoints& ver
     result.windingSuspect = baked.windingSuspect;
     result.rays = baked.rays;
     result.traceSeconds = baked.traceSeconds;
+    result.stages = baked.stages;
     const size_t columns = baked.coefficients.size() / std::max<size_t>(owner.size(), 1);
     result.coefficients.resize(count * columns);
     result.ao.resize(count);
+    result.error.resize(count);
     result.inside.resize(count);
     for (size_t v = 0; v < count; ++v) {
         const size_t item = itemOf[v];
         std::copy_n(&baked.coefficients[item * columns], columns, &result.coefficients[v * columns]);
         result.ao[v] = baked.ao[item];
+        result.error[v] = baked.error[item];
         result.inside[v] = baked.inside[item];
     }
     return result;

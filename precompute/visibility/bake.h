@@ -1,6 +1,7 @@
 // Visibility of surface points in spherical harmonics.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -13,15 +14,31 @@ namespace prt {
 
 /// Largest number of directions (their basis functions are kept in a table).
 inline constexpr int kMaxBakeRays = 262144;
+/// Sizes of the sets of directions that an adaptive bake goes through.
+inline constexpr std::array kAdaptiveSets{256, 1024, 4096, 16384};
 
 struct BakeOptions {
     int shOrder = 6;  ///< 1..kMaxBundleShOrder
     int rays = 1024;  ///< 1..kMaxBakeRays over the whole sphere; those above a point's horizon are traced
+    /// 0: every point takes all `rays`. Above: adaptive, `rays` does not count. A point goes through finer
+    /// and finer sets of directions (kAdaptiveSets) and stops at the first one whose estimated error
+    /// (BakeResult::error) is at most this; of each finer set only directions next to a silhouette are traced
+    double error = 0;
+    int finestSet = 16384;   ///< adaptive: the last of kAdaptiveSets to be used
+    int blockPoints = 256;   ///< 1..256 points that take one direction at a time; for speed alone
     Projection projection;   ///< weighted for irradiance, or plain
     bool findInside = true;  ///< classify points inside geometry (most hits are back faces)
     /// [triangles] or empty: non-zero where both sides are a proper outside (a curtain, a leaf), so that
     /// meeting the back does not mean to be inside
     std::span<const uint8_t> doubleSided;
+};
+
+/// Seconds of a bake by what was done, summed over threads.
+struct BakeStages {
+    double setUp = 0;    ///< tables, order of the points
+    double trace = 0;    ///< choosing, making and tracing rays
+    double project = 0;  ///< sums over visible directions, least squares, estimated errors
+    double inside = 0;   ///< points inside geometry
 };
 
 struct BakeResult {
@@ -33,8 +50,12 @@ struct BakeResult {
     /// More than half of the points looked inside: the winding is inverted or inconsistent, and `inside` was
     /// cleared. A warning has been logged.
     bool windingSuspect = false;
+    /// [points] estimated RMS sampling error of irradiance under natural light, as a share of what an open
+    /// point receives (math/irradiance_norm.h). Nine of ten true errors are below twice the estimate.
+    std::vector<float> error;
     uint64_t rays = 0;        ///< occlusion rays traced
     double traceSeconds = 0;  ///< wall clock of tracing and projection
+    BakeStages stages;        ///< where it went
 };
 
 /// Visibility at points, by one set of world-fixed directions (spherical Fibonacci) shared by all points;

@@ -20,6 +20,7 @@ VisibilityMap emptyMap(const PointGrid& grid, int shOrder) {
     map.coefficients.assign(grid.count * size_t(shCount(shOrder)), 0.0f);
     map.validity.assign(grid.count, Validity::Empty);
     map.ao.assign(grid.count, 0.0f);
+    map.error.assign(grid.count, 0.0f);
     map.normals.assign(grid.count, Vec3f::Zero());
     return map;
 }
@@ -28,6 +29,7 @@ void copyValue(VisibilityMap& map, size_t from, size_t to) {
     const size_t columns = size_t(shCount(map.shOrder));
     std::copy_n(&map.coefficients[from * columns], columns, &map.coefficients[to * columns]);
     map.ao[to] = map.ao[from];
+    map.error[to] = map.error[from];
 }
 
 // Neighbour along an edge.
@@ -58,6 +60,7 @@ VisibilityMap fillTexels(const TexelSurface& surface, const BakeResult& baked, i
     const size_t columns = size_t(shCount(shOrder));
     PRT_CHECK_EQ(surface.pointOfTexel.size(), texels);
     PRT_CHECK_EQ(baked.coefficients.size(), surface.points.size() * columns);
+    PRT_CHECK_EQ(baked.error.size(), surface.points.size());
     VisibilityMap map = emptyMap({PointDomain::Texel, surface.width, surface.height, texels}, shOrder);
     std::vector<uint8_t> has(texels, 0);
     for (size_t t = 0; t < texels; ++t) {
@@ -65,6 +68,7 @@ VisibilityMap fillTexels(const TexelSurface& surface, const BakeResult& baked, i
         if (point == kNoPoint) continue;
         std::copy_n(&baked.coefficients[point * columns], columns, &map.coefficients[t * columns]);
         map.ao[t] = baked.ao[point];
+        map.error[t] = baked.error[point];
         map.normals[t] = surface.points[point].normal;
         map.validity[t] = baked.inside[point] ? Validity::Inside : Validity::Valid;
         has[t] = map.validity[t] == Validity::Valid;
@@ -94,9 +98,11 @@ VisibilityMap fillVertices(const Scene& scene, const VertexPoints& vertices, con
                            int shOrder) {
     const size_t count = scene.vertexCount(), columns = size_t(shCount(shOrder));
     PRT_CHECK_EQ(baked.coefficients.size(), count * columns);
+    PRT_CHECK_EQ(baked.error.size(), count);
     VisibilityMap map = emptyMap(vertexGrid(count), shOrder);
     map.coefficients = baked.coefficients;
     map.ao = baked.ao;
+    map.error = baked.error;
     map.normals = vertices.normals;
     for (size_t v = 0; v < count; ++v) map.validity[v] = baked.inside[v] ? Validity::Inside : Validity::Valid;
 
@@ -106,17 +112,19 @@ VisibilityMap fillVertices(const Scene& scene, const VertexPoints& vertices, con
         for (size_t v = 0; v < count; ++v) {
             if (map.validity[v] != Validity::Inside || vertices.sameAs[v] != v) continue;
             std::vector<float> sum(columns, 0.0f);
-            float ao = 0, weights = 0;
+            float ao = 0, error = 0, weights = 0;
             for (const Link& link : links[v]) {
                 if (map.validity[link.vertex] == Validity::Inside) continue;
                 for (size_t c = 0; c < columns; ++c)
                     sum[c] += link.weight * map.coefficients[link.vertex * columns + c];
                 ao += link.weight * map.ao[link.vertex];
+                error += link.weight * map.error[link.vertex];
                 weights += link.weight;
             }
             if (!(weights > 0)) continue;
             for (size_t c = 0; c < columns; ++c) map.coefficients[v * columns + c] = sum[c] / weights;
             map.ao[v] = ao / weights;
+            map.error[v] = error / weights;
             filled.push_back(v);
         }
         if (filled.empty()) break;

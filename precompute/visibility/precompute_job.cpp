@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "precompute/base/error.h"
 #include "precompute/base/log.h"
@@ -11,6 +12,7 @@
 #include "precompute/io/bundle.h"
 #include "precompute/io/glb.h"
 #include "precompute/io/projection_attributes.h"
+#include "precompute/math/irradiance_norm.h"
 #include "precompute/math/sh.h"
 #include "precompute/visibility/bake.h"
 #include "precompute/visibility/fill.h"
@@ -29,7 +31,10 @@ void checkRange(const char* option, int value, int low, int high) {
 
 void checkSettings(const PrecomputeSettings& settings) {
     checkRange("--order", settings.shOrder, 1, kMaxBundleShOrder);
-    checkRange("--rays", settings.rays, 1, kMaxBakeRays);
+    if (settings.rays != 0) checkRange("--rays", settings.rays, 1, kMaxBakeRays);
+    if (!(settings.error > 0 && settings.error <= 1))
+        throw UsageError("--error", fmt::format("{} is out of range", settings.error),
+                         "choose more than 0, at most 1");
     if (!settings.perVertex) checkRange("--texels", settings.texels, kSmallestAtlas, kLargestAtlas);
 }
 
@@ -49,8 +54,10 @@ std::string commandLine(const PrecomputeSettings& settings) {
     std::string line =
         fmt::format("prt precompute {} -o {}", quoted(settings.meshPath), quoted(settings.bundlePath));
     line += settings.perVertex ? std::string(" --per-vertex") : fmt::format(" --texels {}", settings.texels);
-    line += fmt::format(" --order {} --rays {} --projection {}", settings.shOrder, settings.rays,
+    line += fmt::format(" --order {} --projection {}", settings.shOrder,
                         projectionName(settings.projection.kind));
+    line += settings.rays > 0 ? fmt::format(" --rays {}", settings.rays)
+                              : fmt::format(" --error {}", settings.error);
     const LoadMeshOptions defaults;
     if (settings.load.uvScale != defaults.uvScale)
         line += fmt::format(" --uv-scale {}", settings.load.uvScale);
@@ -103,7 +110,10 @@ Baked bake(const RayCaster& caster, const Scene& scene, const PrecomputeSettings
     const std::vector<uint8_t> doubleSided = doubleSidedTriangles(scene);
     BakeOptions options;
     options.shOrder = settings.shOrder;
-    options.rays = settings.rays;
+    if (settings.rays > 0)
+        options.rays = settings.rays;
+    else
+        options.error = settings.error;
     options.projection = settings.projection;
     options.doubleSided = doubleSided;
     Baked baked;
@@ -122,21 +132,32 @@ Baked bake(const RayCaster& caster, const Scene& scene, const PrecomputeSettings
     }
     baked.map.projection = settings.projection;
     baked.map.attributes = {{"directionSet", "spherical-fibonacci"},
-                            {"rays", std::to_string(settings.rays)},
+                            {"rays", settings.rays > 0 ? std::to_string(settings.rays) : "adaptive"},
                             {"embreeIsa", caster.instructionSet()}};
+    if (settings.rays == 0) baked.map.attributes["errorBound"] = fmt::format("{}", settings.error);
     return baked;
 }
 
-void countValidity(const Baked& baked, PrecomputeReport& report) {
-    double ao = 0;
+// Counts of every kind of point, and means over the valid ones.
+void summarize(const VisibilityMap& map, PrecomputeReport& report) {
+    const IrradianceNorm norm(map.shOrder);
+    const size_t columns = size_t(shCount(map.shOrder));
+    double ao = 0, errors = 0, received = 0;
     size_t valid = 0;
-    for (size_t i = 0; i < baked.map.validity.size(); ++i) {
-        ++report.validity[size_t(baked.map.validity[i])];
-        if (baked.map.validity[i] != Validity::Valid) continue;
-        ao += double(baked.map.ao[i]);
+    for (size_t i = 0; i < map.validity.size(); ++i) {
+        ++report.validity[size_t(map.validity[i])];
+        if (map.validity[i] != Validity::Valid || map.normals[i] == Vec3f::Zero()) continue;
+        ao += double(map.ao[i]);
+        errors += double(map.error[i]) * double(map.error[i]);
+        const double irradiance =
+            norm.evaluate(map.normals[i], std::span(&map.coefficients[i * columns], columns));
+        received += irradiance * irradiance;
         ++valid;
     }
-    report.meanAo = valid ? ao / double(valid) : 0;
+    if (valid == 0) return;
+    report.meanAo = ao / double(valid);
+    report.errorRms = std::sqrt(errors / double(valid));
+    report.relativeError = received > 0 ? std::sqrt(errors / received) : 0;
 }
 
 }  // namespace
@@ -165,7 +186,8 @@ PrecomputeReport runPrecompute(const PrecomputeSettings& settings) {
     report.traceSeconds = baked.result.traceSeconds;
     report.raysPerSecond = report.traceSeconds > 0 ? double(report.rays) / report.traceSeconds : 0;
     report.instructionSet = caster.instructionSet();
-    countValidity(baked, report);
+    report.stages = baked.result.stages;
+    summarize(baked.map, report);
     throwIfInterrupted();
 
     const std::string command = commandLine(settings);

@@ -14,7 +14,10 @@ std::string precomputeSection(const PrecomputeSettings& settings, const Precompu
     given["domain"] = pointDomainName(settings.perVertex ? PointDomain::Vertex : PointDomain::Texel);
     if (!settings.perVertex) given["texels"] = settings.texels;
     given["order"] = settings.shOrder;
-    given["rays"] = settings.rays;
+    if (settings.rays > 0)
+        given["rays"] = settings.rays;
+    else
+        given["error"] = settings.error;
     given["uv_scale"] = settings.load.uvScale;
     if (!settings.load.normalMap.empty()) given["normal_map"] = settings.load.normalMap;
     given["projection"] = projectionName(settings.projection.kind);
@@ -34,6 +37,13 @@ std::string precomputeSection(const PrecomputeSettings& settings, const Precompu
     found["trace_seconds"] = report.traceSeconds;
     found["peak_rss_bytes"] = report.peakResidentBytes;
     found["mean_ao"] = report.meanAo;
+    found["sampling_error"] = report.errorRms;
+    found["sampling_error_relative"] = report.relativeError;
+    auto& stages = found["stage_seconds"];
+    stages["set_up"] = report.stages.setUp;
+    stages["trace"] = report.stages.trace;
+    stages["project"] = report.stages.project;
+    stages["inside"] = report.stages.inside;
     found["embree_isa"] = report.instructionSet;
     found["repairs"] = report.repairs;
     auto& validity = found["validity"];

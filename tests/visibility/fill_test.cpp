@@ -33,6 +33,7 @@ struct Drawing {
                 surface.points.push_back({{id, 0, 0}, Vec3f(1, id, 0).normalized(), 0});
                 for (int i = 0; i < 4; ++i) baked.coefficients.push_back(10 * id + float(i));
                 baked.ao.push_back(id / 100);
+                baked.error.push_back(id / 1000);
                 baked.inside.push_back(std::isupper(c) ? 1 : 0);
             }
     }
@@ -48,6 +49,7 @@ TEST(FillTexels, KeepsWhatWasBaked) {
     EXPECT_EQ(map.shOrder, kOrder);
     EXPECT_EQ(map.coefficients, drawing.baked.coefficients);
     EXPECT_EQ(map.ao, drawing.baked.ao);
+    EXPECT_EQ(map.error, drawing.baked.error);
     for (const Validity validity : map.validity) EXPECT_EQ(validity, Validity::Valid);
     for (size_t t = 0; t < 6; ++t) EXPECT_EQ(map.normals[t], drawing.surface.points[t].normal);
 }
@@ -64,6 +66,7 @@ TEST(FillTexels, InsideTakesTheNearestOfItsChart) {
         if (t == 4) continue;  // as near to 3 as to 5
         EXPECT_EQ(map.coefficients[4 * t + 1], 10 * float(source[t]) + 1) << t;
         EXPECT_EQ(map.ao[t], float(source[t]) / 100) << t;
+        EXPECT_EQ(map.error[t], float(source[t]) / 1000) << t;
     }
     EXPECT_THAT(map.coefficients[17], testing::AnyOf(31.0f, 51.0f));
 }
@@ -130,6 +133,7 @@ TEST(FillVertices, InsideTakesTheMeanOfItsNeighbours) {
     for (size_t v = 0; v < 13; ++v) {
         for (int c = 0; c < 4; ++c) baked.coefficients.push_back(v < 4 ? 1.0f + float(c) : 5.0f);
         baked.ao.push_back(v < 4 ? 0.25f : 0.75f);
+        baked.error.push_back(v < 4 ? 0.01f : 0.03f);
         baked.inside.push_back((v >= 4 && v < 8) || v == 12);
     }
     const VisibilityMap map = fillVertices(scene, vertices, baked, kOrder);
@@ -141,6 +145,7 @@ TEST(FillVertices, InsideTakesTheMeanOfItsNeighbours) {
     for (const size_t v : {4u, 5u, 12u}) {
         EXPECT_FLOAT_EQ(map.coefficients[v * 4 + 2], 3.0f);
         EXPECT_FLOAT_EQ(map.ao[v], 0.25f);
+        EXPECT_FLOAT_EQ(map.error[v], 0.01f);
     }
     for (const size_t v : {6u, 7u}) EXPECT_FLOAT_EQ(map.coefficients[v * 4 + 2], 5.0f);
     EXPECT_EQ(map.normals, vertices.normals);
@@ -160,11 +165,13 @@ TEST(FillVertices, NearerNeighboursWeighMore) {
     BakeResult baked;
     baked.coefficients = {9, 1, 2};
     baked.ao = {0.9f, 0.1f, 0.2f};
+    baked.error = {0.01f, 0.02f, 0.03f};
     baked.inside = {1, 0, 0};
     const VisibilityMap map = fillVertices(scene, vertices, baked, 1);
     // Each edge of one triangle is met once: weights 1 and 1/3.
     EXPECT_FLOAT_EQ(map.coefficients[0], (1.0f + 2.0f / 3) / (4.0f / 3));
     EXPECT_FLOAT_EQ(map.ao[0], (0.1f + 0.2f / 3) / (4.0f / 3));
+    EXPECT_FLOAT_EQ(map.error[0], (0.02f + 0.03f / 3) / (4.0f / 3));
 }
 
 }  // namespace

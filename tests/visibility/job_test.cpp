@@ -92,7 +92,7 @@ TEST_F(PrecomputeJob, BakesTexels) {
     EXPECT_EQ(bundle.find("mesh.glb")->madeFrom.at(given.meshPath), xxh3HexOfFile(given.meshPath));
     EXPECT_THAT(visibilityFile->madeBy, testing::StartsWith("prt precompute "));
     EXPECT_THAT(visibilityFile->madeBy,
-                testing::HasSubstr("--texels 64 --order 3 --rays 256 --projection irradiance"));
+                testing::HasSubstr("--texels 64 --order 3 --projection irradiance --rays 256"));
     const std::string section = bundle.section("precompute");
     for (const char* key :
          {"\"points\"", "\"rays\"", "\"rays_per_s\"", "\"seconds\"", "\"peak_rss_bytes\"", "\"validity\"",
@@ -200,7 +200,11 @@ TEST_F(PrecomputeJob, RefusesSettingsOutOfRange) {
     };
     refused([](PrecomputeSettings& s) { s.shOrder = 0; });
     refused([](PrecomputeSettings& s) { s.shOrder = 11; });
-    refused([](PrecomputeSettings& s) { s.rays = 0; });
+    refused([](PrecomputeSettings& s) { s.rays = -1; });
+    refused([](PrecomputeSettings& s) { s.rays = 1 << 20; });
+    refused([](PrecomputeSettings& s) { s.rays = 0, s.error = 0; });
+    refused([](PrecomputeSettings& s) { s.rays = 0, s.error = 1.5; });
+    refused([](PrecomputeSettings& s) { s.rays = 0, s.error = std::nan(""); });
     refused([](PrecomputeSettings& s) { s.texels = -5; });
     refused([](PrecomputeSettings& s) { s.texels = 8193; });
     EXPECT_EQ(files(), (std::set<std::string>{"ball.obj"}));

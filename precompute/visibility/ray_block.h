@@ -1,0 +1,59 @@
+// Rays from a block of near items, one direction at a time.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "precompute/rays/ray_caster.h"
+#include "precompute/visibility/bake_items.h"
+#include "precompute/visibility/point_mask.h"
+
+namespace prt {
+
+class RayBlock {
+  public:
+    RayBlock(const RayCaster& caster, const BakeItems& items) : caster_(caster), items_(items) {}
+
+    /// @param block  the items, at most kMostBlockPoints, near each other; kept by reference
+    void begin(std::span<const uint32_t> block);
+    size_t size() const { return block_.size(); }
+    uint32_t item(size_t i) const { return block_[i]; }
+    /// The items with more than one sub-point.
+    const PointMask& shared() const { return shared_; }
+
+    /// Items with a direction above the horizon of the sub-point that takes it. Until the next call cosine(i)
+    /// is its cosine there.
+    /// @param k  index of the direction in its set, by which it is dealt
+    PointMask above(uint32_t k, const Vec3f& direction);
+    float cosine(size_t i) const { return cosines_[i]; }
+    /// The cosine of any direction at the sub-point that takes it.
+    float cosineOf(size_t i, uint32_t k, const Vec3f& direction) const;
+
+    /// Those of `rays`, all above their horizon, that see past the scene in a direction.
+    PointMask visible(uint32_t k, const Vec3f& direction, const PointMask& rays);
+    uint64_t rays() const { return rays_; }  ///< traced since the beginning
+
+  private:
+    uint32_t subPoint(size_t i, uint32_t k) const;
+    void setCone(Vec3f axis);
+
+    const RayCaster& caster_;
+    const BakeItems& items_;
+    std::span<const uint32_t> block_;
+    PointMask shared_;
+    std::vector<uint32_t> sharedList_;
+    std::vector<uint8_t> slots_;  // [kMostBlockPoints × 256] sub-point by the upper bits of the deal
+    std::vector<Vec3f> offset_;   // ray origins of all sub-points of the block
+    std::array<uint32_t, kMostBlockPoints> firstPoint_{}, offsetStart_{}, hash_{};
+    std::array<float, kMostBlockPoints> normalX_{}, normalY_{}, normalZ_{}, cosines_{};
+    std::array<Vec3f, kMostBlockPoints> origins_;
+    std::array<uint8_t, kMostBlockPoints> blocked_{};
+    // Cone around the normals: no item has a direction above its horizon that is farther from the axis.
+    Vec3f coneAxis_ = Vec3f::Zero();
+    float coneSine_ = 1;
+    uint64_t rays_ = 0;
+};
+
+}  // namespace prt
