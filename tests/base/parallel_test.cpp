@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <mutex>
 #include <set>
 #include <stdexcept>
@@ -104,31 +105,41 @@ TEST(ThreadCount, ZeroMeansAllCores) {
     EXPECT_GE(threadCount(), 1);
 }
 
-// The number of threads that a loop runs on, and that each scope leaves what it found.
+// As many threads as a loop runs on, at most `sought` of them waited for: each block waits until so many
+// threads have come, or gives up after a second.
+size_t threadsOfLoop(size_t sought) {
+    std::mutex mutex;
+    std::set<std::thread::id> seen;
+    parallelFor(64, 1, [&](size_t, size_t) {
+        for (int tries = 0; tries < 1000; ++tries) {
+            {
+                const std::lock_guard lock(mutex);
+                seen.insert(std::this_thread::get_id());
+                if (seen.size() >= sought) break;
+            }
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        }
+    });
+    return seen.size();
+}
+
+// A loop takes up what was set last, be it more or less than before, and each scope leaves what it found.
 TEST(ThreadCount, ScopesNest) {
-    const auto threadsOfLoop = [] {
-        std::mutex mutex;
-        std::set<std::thread::id> seen;
-        parallelFor(200, 1, [&](size_t, size_t) {
-            const std::lock_guard lock(mutex);
-            seen.insert(std::this_thread::get_id());
-        });
-        return seen.size();
-    };
     setThreadCount(3);
     {
         const ScopedThreadCount one(1);
         EXPECT_EQ(threadCount(), 1);
-        EXPECT_EQ(threadsOfLoop(), 1u);
+        EXPECT_EQ(threadsOfLoop(1), 1u);
         {
             const ScopedThreadCount two(2);
             EXPECT_EQ(threadCount(), 2);
-            EXPECT_LE(threadsOfLoop(), 2u);
+            EXPECT_EQ(threadsOfLoop(2), 2u);
         }
         EXPECT_EQ(threadCount(), 1);
-        EXPECT_EQ(threadsOfLoop(), 1u);
+        EXPECT_EQ(threadsOfLoop(1), 1u);
     }
     EXPECT_EQ(threadCount(), 3);
+    EXPECT_EQ(threadsOfLoop(3), 3u);
     setThreadCount(0);
     const int all = threadCount();
     { const ScopedThreadCount two(2); }
