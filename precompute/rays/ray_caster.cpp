@@ -151,6 +151,20 @@ void RayCaster::occluded(const Vec3f& origin, std::span<const Vec3f> directions,
     }
 }
 
+void RayCaster::occludedRays(std::span<const Vec3f> origins, std::span<const Vec3f> directions,
+                             std::span<uint8_t> occluded) const {
+    PRT_CHECK_EQ(origins.size(), directions.size());
+    PRT_CHECK_LE(origins.size(), occluded.size());
+    thread_local Stream stream;
+    const State& s = *state_;
+    for (size_t begin = 0; begin < origins.size(); begin += kRayStream) {
+        const size_t count = std::min(kRayStream, origins.size() - begin);
+        for (size_t i = 0; i < count; ++i)
+            setRay(stream.rays[i], origins[begin + i] * s.scale, directions[begin + i]);
+        stream.trace(s.embree.scene(), count, &occluded[begin]);
+    }
+}
+
 void RayCaster::occludedPackets(std::span<const Vec3f> origins, const Vec3f& direction,
                                 std::span<uint8_t> occluded) const {
     PRT_CHECK_LE(origins.size(), occluded.size());

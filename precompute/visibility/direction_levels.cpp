@@ -10,6 +10,7 @@
 #include "precompute/math/directions.h"
 #include "precompute/math/sh.h"
 #include "precompute/visibility/accumulate.h"
+#include "precompute/visibility/bake_items.h"
 
 namespace prt {
 namespace {
@@ -79,6 +80,7 @@ const DirectionLevel& DirectionLevels::operator[](size_t level) const {
             evalSh(shOrder_, direction, std::span(&made.basis[k * made.stride], columns));
         }
         if (level == 0) return;
+        for (const uint32_t k : mortonOrder(made.directions)) made.order.push_back(uint16_t(k));
         const std::vector<Vec3f> coarser = sphericalFibonacci(sizes_[level - 1]);
         for (size_t k = 0; k < made.size(); ++k) {
             made.coarser.push_back(nearestDirections<4>(coarser, made.directions[k], UINT32_MAX));

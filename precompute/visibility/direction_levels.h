@@ -21,6 +21,8 @@ struct DirectionLevel {
     std::vector<std::array<uint16_t, 4>> coarser;
     /// [N] the nearest other directions of the same set; empty for the first set
     std::vector<std::array<uint16_t, 6>> near;
+    /// [N] an order in which near directions follow each other; empty for the first set
+    std::vector<uint16_t> order;
     /// Every so many directions one is traced whatever its neighbours say; 0: none.
     uint32_t auditStep = 0;
 

@@ -19,13 +19,16 @@ void reset(const DirectionLevel& level, LevelMasks& masks) {
     masks.visible.resize(level.size());
 }
 
-// Adds the cosines of a direction for items of several sub-points.
-void addCosines(const RayBlock& block, const PointMask& above, const PointMask& visible,
+// Adds the cosines of all directions for items of several sub-points.
+void addCosines(const RayBlock& block, const DirectionLevel& level, const LevelMasks& masks,
                 SharedCosines& cosines) {
-    (above & block.shared()).forEach([&](size_t i) {
-        cosines.open[i] += double(block.cosine(i));
-        if (visible.test(i)) cosines.seen[i] += double(block.cosine(i));
-    });
+    if (!block.shared().any()) return;
+    for (size_t k = 0; k < level.size(); ++k)
+        (masks.above[k] & block.shared()).forEach([&](size_t i) {
+            const double cosine = double(block.cosineOf(i, uint32_t(k), level.directions[k]));
+            cosines.open[i] += cosine;
+            if (masks.visible[k].test(i)) cosines.seen[i] += cosine;
+        });
 }
 
 // What the nearest coarser directions say.
@@ -53,7 +56,7 @@ PointMask doubtful(const DirectionLevel& level, const LevelMasks& masks, const s
 
 // One round over all directions; an answer that changes is seen by those that follow.
 bool spread(RayBlock& block, const DirectionLevel& level, bool up, LevelMasks& masks,
-            std::vector<PointMask>& traced, SharedCosines& cosines) {
+            std::vector<PointMask>& traced) {
     bool found = false;
     for (size_t step = 0; step < level.size(); ++step) {
         if (step % kInterruptStep == 0) throwIfInterrupted();
@@ -62,10 +65,6 @@ bool spread(RayBlock& block, const DirectionLevel& level, bool up, LevelMasks& m
         if (!rays.any()) continue;
         found = true;
         const PointMask seen = block.visible(uint32_t(k), level.directions[k], rays);
-        ((masks.visible[k] ^ seen) & rays & block.shared()).forEach([&](size_t i) {
-            const double cosine = double(block.cosineOf(i, uint32_t(k), level.directions[k]));
-            cosines.seen[i] += seen.test(i) ? cosine : -cosine;
-        });
         masks.visible[k] = without(masks.visible[k], rays) | seen;
         traced[k] = traced[k] | rays;
     }
@@ -83,8 +82,8 @@ void traceAll(RayBlock& block, const DirectionLevel& level, LevelMasks& masks, S
         masks.visible[k] = {};
         if (!masks.above[k].any()) continue;
         masks.visible[k] = block.visible(uint32_t(k), direction, masks.above[k]);
-        addCosines(block, masks.above[k], masks.visible[k], cosines);
     }
+    addCosines(block, level, masks, cosines);
 }
 
 void traceSilhouettes(RayBlock& block, const DirectionLevel& level, const LevelMasks& coarser,
@@ -92,22 +91,23 @@ void traceSilhouettes(RayBlock& block, const DirectionLevel& level, const LevelM
     PRT_CHECK_EQ(level.coarser.size(), level.size());
     reset(level, masks);
     std::vector<PointMask> traced(level.size());
-    for (size_t k = 0; k < level.size(); ++k) {
-        if (k % kInterruptStep == 0) throwIfInterrupted();
+    size_t looked = 0;
+    for (const uint16_t k : level.order) {
+        if (looked++ % kInterruptStep == 0) throwIfInterrupted();
         const Vec3f& direction = level.directions[k];
-        const PointMask above = block.above(uint32_t(k), direction);
+        const PointMask above = block.above(k, direction);
         const Prediction prediction = predict(level.coarser[k], coarser);
         const bool audit = level.auditStep != 0 && k % level.auditStep == level.auditStep / 2;
         const PointMask rays = audit ? above : without(above, prediction.sure);
-        PointMask visible = above & prediction.open & prediction.sure;
-        if (rays.any()) visible = without(visible, rays) | block.visible(uint32_t(k), direction, rays);
         masks.above[k] = above;
-        masks.visible[k] = visible;
+        masks.visible[k] = without(above & prediction.open & prediction.sure, rays);
         traced[k] = rays;
-        addCosines(block, above, visible, cosines);
+        if (rays.any()) block.enqueue(k, direction, rays, masks.visible);
     }
+    block.flush(masks.visible);
     for (int round = 0; round < kSpreadRounds; ++round)
-        if (!spread(block, level, round % 2 == 0, masks, traced, cosines)) break;
+        if (!spread(block, level, round % 2 == 0, masks, traced)) break;
+    addCosines(block, level, masks, cosines);
 }
 
 void MaskGather::add(const LevelMasks& source, const PointMask& chosen) {

@@ -12,6 +12,7 @@ namespace prt {
 namespace {
 
 constexpr size_t kSlots = 256;
+constexpr size_t kQueue = 1024;  // rays
 
 // cosines = n·ω, and bits where they are positive.
 PRT_TARGET_CLONES
@@ -116,6 +117,27 @@ PointMask RayBlock::visible(uint32_t k, const Vec3f& direction, const PointMask&
         result.words[w] = bits;
     }
     return result;
+}
+
+void RayBlock::enqueue(uint32_t k, const Vec3f& direction, const PointMask& rays,
+                       std::vector<PointMask>& visible) {
+    rays.forEach([&](size_t i) {
+        queueOrigins_.push_back(offset_[offsetStart_[i] + subPoint(i, k)]);
+        queueDirections_.push_back(direction);
+        queuePlaces_.emplace_back(k, uint32_t(i));
+    });
+    if (queueOrigins_.size() >= kQueue) flush(visible);
+}
+
+void RayBlock::flush(std::vector<PointMask>& visible) {
+    queueBlocked_.resize(queueOrigins_.size());
+    caster_.occludedRays(queueOrigins_, queueDirections_, queueBlocked_);
+    rays_ += queueOrigins_.size();
+    for (size_t ray = 0; ray < queueOrigins_.size(); ++ray)
+        if (!queueBlocked_[ray]) visible[queuePlaces_[ray].first].set(queuePlaces_[ray].second);
+    queueOrigins_.clear();
+    queueDirections_.clear();
+    queuePlaces_.clear();
 }
 
 }  // namespace prt

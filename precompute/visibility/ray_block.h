@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "precompute/rays/ray_caster.h"
@@ -23,16 +24,19 @@ class RayBlock {
     /// The items with more than one sub-point.
     const PointMask& shared() const { return shared_; }
 
-    /// Items with a direction above the horizon of the sub-point that takes it. Until the next call cosine(i)
-    /// is its cosine there.
+    /// Items with a direction above the horizon of the sub-point that takes it.
     /// @param k  index of the direction in its set, by which it is dealt
     PointMask above(uint32_t k, const Vec3f& direction);
-    float cosine(size_t i) const { return cosines_[i]; }
     /// The cosine of any direction at the sub-point that takes it.
     float cosineOf(size_t i, uint32_t k, const Vec3f& direction) const;
 
     /// Those of `rays`, all above their horizon, that see past the scene in a direction.
     PointMask visible(uint32_t k, const Vec3f& direction, const PointMask& rays);
+    /// The same of several directions, gathered so that streams of rays are full: their answers are added to
+    /// `visible` (zero there) by the next flush() at the latest. Directions that follow each other should be
+    /// near each other.
+    void enqueue(uint32_t k, const Vec3f& direction, const PointMask& rays, std::vector<PointMask>& visible);
+    void flush(std::vector<PointMask>& visible);
     uint64_t rays() const { return rays_; }  ///< traced since the beginning
 
   private:
@@ -54,6 +58,10 @@ class RayBlock {
     Vec3f coneAxis_ = Vec3f::Zero();
     float coneSine_ = 1;
     uint64_t rays_ = 0;
+    // Rays waiting for a full stream.
+    std::vector<Vec3f> queueOrigins_, queueDirections_;
+    std::vector<std::pair<uint32_t, uint32_t>> queuePlaces_;  // direction, item
+    std::vector<uint8_t> queueBlocked_;
 };
 
 }  // namespace prt
