@@ -94,7 +94,6 @@ std::vector<Corner> thinned(const std::vector<Corner>& corners, double sum) {
 
 // Directions over the sphere that tell whether a sub-point is inside geometry; half lie above the horizon.
 constexpr int kHiddenDirections = 64;
-constexpr size_t kSpreadStep = 25;  // odd, so that it meets all of a power of two
 // A sub-point of which so many rays met no back of a face is outside: from inside half or more would have.
 constexpr int kOpenRays = 6;
 
@@ -110,20 +109,12 @@ bool looksHidden(const RayCaster& caster, const SurfacePoint& point, std::span<c
     return count.isInside();
 }
 
-// The spiral of directions in an order in which every few of them are spread over the sphere.
-std::vector<Vec3f> spreadDirections() {
-    const std::vector<Vec3f> spiral = sphericalFibonacci(kHiddenDirections);
-    std::vector<Vec3f> spread;
-    for (size_t k = 0; k < spiral.size(); ++k) spread.push_back(spiral[k * kSpreadStep % spiral.size()]);
-    return spread;
-}
-
 // Non-zero for sub-points inside geometry.
 std::vector<uint8_t> findHiddenParts(const RayCaster& caster, const TexelSurface& surface,
                                      const BakeOptions& options) {
     std::vector<uint8_t> hidden(surface.subPoints.size(), 0);
     if (!options.findInside) return hidden;
-    const std::vector<Vec3f> directions = spreadDirections();
+    const std::vector<Vec3f> directions = spreadDirections(kHiddenDirections);
     parallelFor(hidden.size(), 1024, [&](size_t begin, size_t end) {
         throwIfInterrupted();
         for (size_t p = begin; p < end; ++p)

@@ -10,6 +10,10 @@
 
 namespace prt {
 
+/// The spiral of directions in an order in which every few of them are spread over the sphere.
+/// @param count  a power of two
+std::vector<Vec3f> spreadDirections(int count);
+
 /// What rays from one place met.
 struct InsideCount {
     int rays = 0, hits = 0, backs = 0;
