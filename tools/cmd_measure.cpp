@@ -27,6 +27,8 @@ const std::vector<MeasureCommand> kMeasureCommands = {
     {"rotation", "Křivánek Fig. 3 and Table 1: errors and time of every rotation", runMeasureRotation},
     {"projection", "irradiance from plain and weighted visibility against ray-traced truth",
      runMeasureProjection},
+    {"sampling", "error of visibility over rays: sets of directions, uniform and adaptive bakes",
+     runMeasureSampling},
 };
 
 std::string usage() {

@@ -8,5 +8,6 @@ void runMeasureBasis(int argc, char** argv);
 void runMeasureRotation(int argc, char** argv);
 void runMeasureProduct(int argc, char** argv);
 void runMeasureProjection(int argc, char** argv);
+void runMeasureSampling(int argc, char** argv);
 
 }  // namespace prt::tools
