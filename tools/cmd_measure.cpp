@@ -19,6 +19,7 @@ struct MeasureCommand {
 };
 
 const std::vector<MeasureCommand> kMeasureCommands = {
+    {"bake", "rays per second of the bake and of bare ray casting, time by stage", runMeasureBake},
     {"basis", "Habel Fig. 3, Gautron Figs. 4, 5 and 10: bases against signals and coefficients",
      runMeasureBasis},
     {"parameterization", "Iwanicki & Sloan Fig. 8: error of tables over the sphere by layout and size",

@@ -3,6 +3,7 @@
 
 namespace prt::tools {
 
+void runMeasureBake(int argc, char** argv);
 void runMeasureParameterization(int argc, char** argv);
 void runMeasureBasis(int argc, char** argv);
 void runMeasureRotation(int argc, char** argv);
