@@ -1,6 +1,8 @@
 // Projection as a sparse matrix product: a visible direction adds its row of basis functions.
 #include "precompute/visibility/accumulate.h"
 
+#include <algorithm>
+
 #include "precompute/base/parallel.h"
 
 namespace prt {
@@ -10,6 +12,7 @@ constexpr int kWeightSteps = 1024;
 
 constexpr size_t kLanes = 16;
 typedef float Lanes __attribute__((vector_size(kLanes * sizeof(float)), aligned(alignof(float))));
+typedef int32_t Counts __attribute__((vector_size(kLanes * sizeof(int32_t)), aligned(alignof(int32_t))));
 
 // By reference: passing vectors by value depends on the instruction set.
 inline __attribute__((always_inline)) void load(const float* from, Lanes& lanes) {
@@ -82,8 +85,8 @@ void addWeightedTableRows(const float* table, size_t stride, const uint16_t* row
 }
 
 PRT_TARGET_CLONES
-std::array<double, 2> cosinesAbout(const DirectionColumns& directions, size_t count, const float* normal,
-                                   float* cosines) {
+std::array<CosineSum, 2> cosinesAbout(const DirectionColumns& directions, size_t count, const float* normal,
+                                      float* cosines) {
     const float *x = directions.x, *y = directions.y, *z = directions.z;
     const float nx = normal[0], ny = normal[1], nz = normal[2];
     for (size_t k = 0; k < count; ++k) {
@@ -92,26 +95,41 @@ std::array<double, 2> cosinesAbout(const DirectionColumns& directions, size_t co
     }
     const size_t padded = (count + kLanes - 1) / kLanes * kLanes;
     for (size_t k = count; k < padded; ++k) cosines[k] = 0;
-    double partial[kLanes] = {};
-    for (size_t k = 0; k < padded; k += kLanes)
-        for (size_t lane = 0; lane < kLanes; ++lane)
-            partial[lane] += double(cosines[k + lane] > 0 ? cosines[k + lane] : 0.0f);
-    std::array<double, 2> sums{};
-    for (size_t lane = 0; lane < kLanes; ++lane) sums[lane % 2] += partial[lane];
-    return sums;
+    Lanes sums = {};
+    Counts counts = {};
+    for (size_t k = 0; k < padded; k += kLanes) {
+        Lanes values;
+        load(cosines + k, values);
+        const Counts positive = values > 0;
+        sums += positive ? values : Lanes{};
+        counts -= positive;  // of lanes: all bits set where true
+    }
+    std::array<CosineSum, 2> result{};
+    for (size_t lane = 0; lane < kLanes; ++lane)
+        result[lane % 2] += {double(sums[lane]), uint32_t(counts[lane])};
+    return result;
 }
 
-double sumOfCosines(const float* cosines, const uint16_t* rows, size_t rowCount) {
+CosineSum sumOfCosines(const float* cosines, const uint16_t* rows, size_t rowCount) {
     // Several sums side by side: one would wait for its own additions.
-    std::array<double, 4> partial{};
+    std::array<float, 4> sums{};
+    std::array<uint32_t, 4> counts{};
+    const auto add = [&](size_t lane, float cosine) {
+        sums[lane] += cosine > 0 ? cosine : 0.0f;
+        counts[lane] += cosine > 0;
+    };
     size_t j = 0;
     for (; j + 4 <= rowCount; j += 4)
-        for (size_t lane = 0; lane < 4; ++lane) {
-            const float cosine = cosines[rows[j + lane]];
-            partial[lane] += double(cosine > 0 ? cosine : 0.0f);
-        }
-    for (; j < rowCount; ++j) partial[0] += double(cosines[rows[j]] > 0 ? cosines[rows[j]] : 0.0f);
-    return (partial[0] + partial[1]) + (partial[2] + partial[3]);
+        for (size_t lane = 0; lane < 4; ++lane) add(lane, cosines[rows[j + lane]]);
+    for (; j < rowCount; ++j) add(0, cosines[rows[j]]);
+    CosineSum result;
+    for (size_t lane = 0; lane < 4; ++lane) result += {double(sums[lane]), counts[lane]};
+    return result;
+}
+
+float seenShare(const CosineSum& seen, const CosineSum& open) {
+    if (!(open.sum > 0)) return 0;
+    return seen.positive == open.positive ? 1.0f : float(std::min(1.0, seen.sum / open.sum));
 }
 
 PRT_TARGET_CLONES

@@ -56,16 +56,32 @@ struct DirectionColumns {
     const float *x, *y, *z;
 };
 
+/// Σ max(0, cosine) and how many are positive: two sums over the same cosines may differ by their order, but
+/// not in their counts.
+struct CosineSum {
+    double sum = 0;
+    uint32_t positive = 0;
+
+    CosineSum& operator+=(const CosineSum& other) {
+        sum += other.sum;
+        positive += other.positive;
+        return *this;
+    }
+    friend CosineSum operator+(CosineSum a, const CosineSum& b) { return a += b; }
+};
+/// What is seen of all that is open: exactly 1 where nothing is missing; 0 where nothing is open.
+float seenShare(const CosineSum& seen, const CosineSum& open);
+
 /// cosines[k] = n·ω_k, clamped to [−1, 1].
+/// @param count    at most 1024
 /// @param normal   [3]
 /// @param cosines  [count, rounded up to a multiple of 16] out
-/// @return sums of max(0, cosine) over even and over odd k, in double: what an open point sees is then the
-/// whole of it, whatever the order of the sums
-std::array<double, 2> cosinesAbout(const DirectionColumns& directions, size_t count, const float* normal,
-                                   float* cosines);
+/// @return sums over even and over odd k
+std::array<CosineSum, 2> cosinesAbout(const DirectionColumns& directions, size_t count, const float* normal,
+                                      float* cosines);
 
-/// Σ_j max(0, cosines[rows[j]])
-double sumOfCosines(const float* cosines, const uint16_t* rows, size_t rowCount);
+/// The sum over the cosines of some rows, at most 1024.
+CosineSum sumOfCosines(const float* cosines, const uint16_t* rows, size_t rowCount);
 
 /// weights[j] = f(cosines[rows[j]])
 /// @param weights  [rowCount] out

@@ -44,8 +44,8 @@ void BlockProjection::listVisible(const LevelMasks& masks, size_t start, size_t 
 }
 
 void BlockProjection::addChunk(const DirectionLevel& level, size_t i, size_t start, size_t count) {
-    const std::array<double, 2> open = cosinesAbout({&level.x[start], &level.y[start], &level.z[start]},
-                                                    count, normals_[i].data(), cosines_.data());
+    const std::array<CosineSum, 2> open = cosinesAbout({&level.x[start], &level.y[start], &level.z[start]},
+                                                       count, normals_[i].data(), cosines_.data());
     const float* basis = &level.basis[start * stride_];
     for (size_t half = 0; half < 2; ++half) {
         const uint16_t* rows = &lists_[(i * 2 + half) * kListStride];
@@ -69,8 +69,8 @@ void BlockProjection::project(const DirectionLevel& level, const LevelMasks& mas
     directions_ = level.size();
     std::fill(sums_.begin(), sums_.end(), 0.0f);
     for (size_t half = 0; half < 2; ++half) {
-        seen_[half].fill(0);
-        open_[half].fill(0);
+        seen_[half].fill({});
+        open_[half].fill({});
     }
     for (size_t start = 0; start < level.size(); start += kChunk) {
         throwIfInterrupted();
@@ -99,7 +99,7 @@ double BlockProjection::halfSetDifference(size_t i) const {
     if (tables_.weighting)
         tables_.weighting->projection.solve(
             normals_[i], difference,
-            (openness(i) - share(seen_[0][i], open_[0][i])) * float(std::numbers::pi), difference);
+            (openness(i) - seenShare(seen_[0][i], open_[0][i])) * float(std::numbers::pi), difference);
     return tables_.norm.evaluate(normals_[i], difference);
 }
 

@@ -45,12 +45,11 @@ class BlockProjection {
     /// @param out  [n²] the expansion of item i
     void expansion(size_t i, std::span<float> out) const;
     /// (1/π)∫V max(0, n·ω) about the item's normal by this set, as a share of what nothing blocks.
-    float openness(size_t i) const { return share(seen_[0][i] + seen_[1][i], open_[0][i] + open_[1][i]); }
+    float openness(size_t i) const { return seenShare(seen_[0][i] + seen_[1][i], open_[0][i] + open_[1][i]); }
     /// Irradiance norm of the difference between the expansion and that of every second direction.
     double halfSetDifference(size_t i) const;
 
   private:
-    static float share(double seen, double open) { return open > 0 ? float(seen / open) : 0.0f; }
     void listVisible(const LevelMasks& masks, size_t start, size_t end);
     void addChunk(const DirectionLevel& level, size_t i, size_t start, size_t count);
     float* sums(size_t half, size_t i) { return &sums_[(i * 2 + half) * stride_]; }
@@ -63,7 +62,8 @@ class BlockProjection {
     std::vector<float> sums_;      // [kMostBlockPoints × 2 × stride]
     std::vector<float> cosines_, weights_;
     std::array<std::array<uint16_t, kMostBlockPoints>, 2> counts_{};
-    std::array<std::array<double, kMostBlockPoints>, 2> seen_{}, open_{};  // sums of cosines about the normal
+    std::array<std::array<CosineSum, kMostBlockPoints>, 2> seen_{},
+        open_{};  // sums of cosines about the normal
 };
 
 }  // namespace prt

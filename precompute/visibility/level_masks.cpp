@@ -25,7 +25,7 @@ void addCosines(const RayBlock& block, const DirectionLevel& level, const LevelM
     if (!block.shared().any()) return;
     for (size_t k = 0; k < level.size(); ++k)
         (masks.above[k] & block.shared()).forEach([&](size_t i) {
-            const double cosine = double(block.cosineOf(i, uint32_t(k), level.directions[k]));
+            const CosineSum cosine{double(block.cosineOf(i, uint32_t(k), level.directions[k])), 1};
             cosines.open[i] += cosine;
             if (masks.visible[k].test(i)) cosines.seen[i] += cosine;
         });

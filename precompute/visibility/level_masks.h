@@ -5,6 +5,7 @@
 #include <array>
 #include <vector>
 
+#include "precompute/visibility/accumulate.h"
 #include "precompute/visibility/direction_levels.h"
 #include "precompute/visibility/point_mask.h"
 #include "precompute/visibility/ray_block.h"
@@ -19,7 +20,7 @@ struct LevelMasks {
 
 /// Sums of cosines at the sub-points that take the directions, of the items of several sub-points.
 struct SharedCosines {
-    std::array<double, kMostBlockPoints> seen{}, open{};
+    std::array<CosineSum, kMostBlockPoints> seen{}, open{};
 };
 
 /// Traces every direction from every item that has it above its horizon.

@@ -122,8 +122,7 @@ class Batch {
         std::copy(expansion_.begin(), expansion_.end(), stored.begin());
         result_.error[item] = float(error);
         if (rays_.shared().test(i))
-            result_.ao[item] =
-                cosines.open[i] > 0 ? float(std::clamp(cosines.seen[i] / cosines.open[i], 0.0, 1.0)) : 0.0f;
+            result_.ao[item] = seenShare(cosines.seen[i], cosines.open[i]);
         else
             result_.ao[item] = projection_.openness(i);
     }

@@ -83,16 +83,19 @@ TEST(WeighRows, InterpolatesTheTableAtTheCosine) {
     // The last two are directions of the set: cosines of ±1, or beyond by rounding.
     for (const Vec3f& normal :
          {Vec3f(0, 0, 1), Vec3f(0.6f, -0.48f, 0.64f), directions[17], Vec3f(-directions[17])}) {
-        const std::array<double, 2> open =
+        const std::array<CosineSum, 2> open =
             cosinesAbout({x.data(), y.data(), z.data()}, x.size(), normal.data(), cosines.data());
         weighRows(square, cosines.data(), rows.data(), rows.size(), weights.data());
         std::array<double, 2> sums{};
         double ofRows = 0;
         for (size_t k = 0; k < x.size(); ++k) sums[k % 2] += std::max(0.0, double(normal.dot(directions[k])));
-        for (size_t half = 0; half < 2; ++half) EXPECT_NEAR(open[half], sums[half], 1e-4);
+        for (size_t half = 0; half < 2; ++half) EXPECT_NEAR(open[half].sum, sums[half], 1e-4);
         for (size_t j = 0; j < 99; ++j) ofRows += std::max(0.0, double(normal.dot(directions[rows[j]])));
-        EXPECT_NEAR(sumOfCosines(cosines.data(), rows.data(), 99), ofRows, 1e-4);
-        EXPECT_EQ(float(sumOfCosines(cosines.data(), rows.data(), rows.size()) / (open[0] + open[1])), 1.0f);
+        EXPECT_NEAR(sumOfCosines(cosines.data(), rows.data(), 99).sum, ofRows, 1e-4);
+        const CosineSum all = sumOfCosines(cosines.data(), rows.data(), rows.size());
+        EXPECT_EQ(all.positive, open[0].positive + open[1].positive);
+        EXPECT_EQ(seenShare(all, open[0] + open[1]), 1.0f);
+        EXPECT_LT(seenShare(sumOfCosines(cosines.data(), &rows[200], 100), open[0] + open[1]), 0.9f);
         for (size_t j = 0; j < rows.size(); ++j) {
             const double cosine = normal.cast<double>().dot(directions[rows[j]].cast<double>());
             EXPECT_NEAR(cosines[rows[j]], cosine, 2e-7);
