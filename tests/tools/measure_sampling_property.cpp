@@ -28,7 +28,7 @@ TEST(StudyBanding, DealingTurnsBandsIntoGrain) {
     study.truth = 8192;
     study.picturePx = 24;
     const BandingResult result = studyBanding(study);
-    ASSERT_EQ(result.rows.size(), 2 * 2 * 8u);
+    ASSERT_EQ(result.rows.size(), 2 * 2 * 6u);
     for (const BandingRow& row : result.rows) {
         const double parts = std::hypot(row.shadingRms, row.bandsRms, row.grainRms);
         EXPECT_NEAR(parts / row.rms, 1, 1e-9);
@@ -51,7 +51,7 @@ TEST(StudyBanding, DealingTurnsBandsIntoGrain) {
                 EXPECT_GT(rotated.grainRms, shared.grainRms);
                 EXPECT_GT(rotated.step, shared.step);
             }
-    ASSERT_EQ(result.pictures.size(), 1 + 8u);
+    ASSERT_EQ(result.pictures.size(), 1 + 6u);
     EXPECT_EQ(result.pictures[0].name, "truth");
     EXPECT_EQ(result.pictures[0].rms, 0);
     EXPECT_EQ(result.pictures[1].name, "fibonacci-256");
@@ -85,7 +85,7 @@ TEST(StudyBanding, TheCommandWritesTablesAndPictures) {
         table.starts_with("surface,light,set,directions,rays,rms,shading_rms,bands_rms,grain_rms,"
                           "bands_to_white,step\r\nfloor,sun,fibonacci,64,"))
         << table.substr(0, 200);
-    EXPECT_EQ(std::count(table.begin(), table.end(), '\n'), 1 + 2 * 2 * 12);
+    EXPECT_EQ(std::count(table.begin(), table.end(), '\n'), 1 + 2 * 2 * 10);
     const std::string text = readFile(json);
     for (const char* key : {"\"banding\": [", "\"banding_pictures\": [", "\"picture\": \"truth\"",
                             "\"rms_display_steps\": ", "\"surface\": \"ball\"", "\"light\": \"natural\""})

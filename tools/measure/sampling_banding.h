@@ -39,9 +39,9 @@ struct BandingStudy {
     std::vector<int> counts{64, 256, 1024};  ///< uniform sets
     double error = 0.01;                     ///< of adaptive bakes
     int linePoints = 2048;                   ///< >= 512, a power of two
-    int rotated = 32;     ///< >= 16; so many orientations are as good as one for each point
-    int truth = 32768;    ///< directions over the sphere, half as many for pictures
-    int picturePx = 256;  ///< side of the pictures; 0 makes none
+    int rotated = 32;                        ///< >= 4; so many orientations are as good as one for each point
+    int truth = 32768;                       ///< directions over the sphere, half as many for pictures
+    int picturePx = 256;                     ///< side of the pictures; 0 makes none
     uint64_t seed = 1;
 };
 
