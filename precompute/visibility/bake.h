@@ -25,7 +25,7 @@ struct BakeOptions {
     /// (BakeResult::error) is at most this; of each finer set only directions next to a silhouette are traced
     double error = 0;
     int finestSet = 16384;   ///< adaptive: the last of kAdaptiveSets to be used
-    int blockPoints = 256;   ///< 1..256 points that take one direction at a time; for speed alone
+    int blockPoints = 256;   ///< 64, 128, 192 or 256 points that take one direction at a time; for speed alone
     Projection projection;   ///< weighted for irradiance, or plain
     bool findInside = true;  ///< classify points inside geometry (most hits are back faces)
     /// [triangles] or empty: non-zero where both sides are a proper outside (a curtain, a leaf), so that

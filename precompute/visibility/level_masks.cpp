@@ -64,7 +64,7 @@ bool spread(RayBlock& block, const DirectionLevel& level, bool up, LevelMasks& m
         const PointMask rays = doubtful(level, masks, traced, k);
         if (!rays.any()) continue;
         found = true;
-        const PointMask seen = block.visible(uint32_t(k), level.directions[k], rays);
+        const PointMask seen = block.visible(uint32_t(k), level.directions[k], rays, RayCasting::Stream);
         masks.visible[k] = without(masks.visible[k], rays) | seen;
         traced[k] = traced[k] | rays;
     }
@@ -73,7 +73,8 @@ bool spread(RayBlock& block, const DirectionLevel& level, bool up, LevelMasks& m
 
 }  // namespace
 
-void traceAll(RayBlock& block, const DirectionLevel& level, LevelMasks& masks, SharedCosines& cosines) {
+void traceAll(RayBlock& block, const DirectionLevel& level, RayCasting casting, LevelMasks& masks,
+              SharedCosines& cosines) {
     reset(level, masks);
     for (size_t k = 0; k < level.size(); ++k) {
         if (k % kInterruptStep == 0) throwIfInterrupted();
@@ -81,7 +82,7 @@ void traceAll(RayBlock& block, const DirectionLevel& level, LevelMasks& masks, S
         masks.above[k] = block.above(uint32_t(k), direction);
         masks.visible[k] = {};
         if (!masks.above[k].any()) continue;
-        masks.visible[k] = block.visible(uint32_t(k), direction, masks.above[k]);
+        masks.visible[k] = block.visible(uint32_t(k), direction, masks.above[k], casting);
     }
     addCosines(block, level, masks, cosines);
 }

@@ -25,7 +25,8 @@ struct SharedCosines {
 
 /// Traces every direction from every item that has it above its horizon.
 /// @throws Interrupted
-void traceAll(RayBlock& block, const DirectionLevel& level, LevelMasks& masks, SharedCosines& cosines);
+void traceAll(RayBlock& block, const DirectionLevel& level, RayCasting casting, LevelMasks& masks,
+              SharedCosines& cosines);
 
 /// Answers for a finer set from those of the coarser one before it. A direction takes the answer of its
 /// nearest coarser directions where they agree; it is traced where they do not (a silhouette passes), where

@@ -103,10 +103,24 @@ float RayBlock::cosineOf(size_t i, uint32_t k, const Vec3f& direction) const {
     return n.x() * direction.x() + n.y() * direction.y() + n.z() * direction.z();
 }
 
-PointMask RayBlock::visible(uint32_t k, const Vec3f& direction, const PointMask& rays) {
+PointMask RayBlock::visible(uint32_t k, const Vec3f& direction, const PointMask& rays, RayCasting casting) {
+    std::array<size_t, std::tuple_size_v<decltype(rays.words)> + 1> first{};  // ray of each word
     size_t count = 0;
-    rays.forEach([&](size_t i) { origins_[count++] = offset_[offsetStart_[i] + subPoint(i, k)]; });
-    caster_.occluded(std::span(origins_.data(), count), direction, std::span(blocked_.data(), count));
+    for (size_t w = 0; w < rays.words.size(); ++w) {
+        for (uint64_t word = rays.words[w]; word != 0; word &= word - 1) {
+            const size_t i = w * 64 + size_t(std::countr_zero(word));
+            origins_[count++] = offset_[offsetStart_[i] + subPoint(i, k)];
+        }
+        first[w + 1] = count;
+    }
+    const std::span origins(origins_.data(), count);
+    const std::span blocked(blocked_.data(), count);
+    if (casting == RayCasting::Stream)
+        caster_.occluded(origins, direction, blocked);
+    else
+        for (size_t w = 0; w < rays.words.size(); ++w)
+            caster_.occludedPackets(origins.subspan(first[w], first[w + 1] - first[w]), direction,
+                                    blocked.subspan(first[w], first[w + 1] - first[w]));
     rays_ += count;
     PointMask result;
     size_t ray = 0;

@@ -13,6 +13,10 @@
 
 namespace prt {
 
+/// How Embree is given the rays of one direction. By packets a ray that grazes an edge may depend on those
+/// beside it: they never reach from one word of a mask to the next.
+enum class RayCasting { Stream, Packets };
+
 class RayBlock {
   public:
     RayBlock(const RayCaster& caster, const BakeItems& items) : caster_(caster), items_(items) {}
@@ -31,7 +35,7 @@ class RayBlock {
     float cosineOf(size_t i, uint32_t k, const Vec3f& direction) const;
 
     /// Those of `rays`, all above their horizon, that see past the scene in a direction.
-    PointMask visible(uint32_t k, const Vec3f& direction, const PointMask& rays);
+    PointMask visible(uint32_t k, const Vec3f& direction, const PointMask& rays, RayCasting casting);
     /// The same of several directions, gathered so that streams of rays are full: their answers are added to
     /// `visible` (zero there) by the next flush() at the latest. Directions that follow each other should be
     /// near each other.

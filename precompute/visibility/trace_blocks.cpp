@@ -46,6 +46,7 @@ struct Bake {
     const BakeOptions& options;
     const DirectionLevels& levels;
     const ProjectionTables& tables;
+    RayCasting casting;
     size_t columns;
 };
 
@@ -94,7 +95,7 @@ class Batch {
         LevelMasks answers;
         SharedCosines cosines;
         if (levelIndex == 0)
-            traceAll(rays_, level, answers, cosines);
+            traceAll(rays_, level, bake_.casting, answers, cosines);
         else
             traceSilhouettes(rays_, level, block.answers, answers, cosines);
         block.answers = std::move(answers);
@@ -170,7 +171,9 @@ void checkOptions(const RayCaster& caster, const BakeItems& items, const BakeOpt
         throw UsageError("error", fmt::format("{} is out of range", options.error), "choose 0 or more");
     PRT_CHECK(std::find(kAdaptiveSets.begin(), kAdaptiveSets.end(), options.finestSet) !=
               kAdaptiveSets.end());
-    PRT_CHECK(options.blockPoints >= 1 && size_t(options.blockPoints) <= kMostBlockPoints);
+    // Whole words of a mask, so that packets of rays are the same for all of them.
+    PRT_CHECK(options.blockPoints >= 64 && options.blockPoints % 64 == 0);
+    PRT_CHECK_LE(size_t(options.blockPoints), kMostBlockPoints);
     PRT_CHECK(items.normals.empty() || items.normals.size() == items.count());
     PRT_CHECK(items.firstPoint.empty() || !items.normals.empty());
     PRT_CHECK(options.doubleSided.empty() || options.doubleSided.size() == caster.triangleCount());
@@ -182,6 +185,20 @@ std::vector<int> setSizes(const BakeOptions& options) {
     for (const int size : kAdaptiveSets)
         if (size <= options.finestSet) sizes.push_back(size);
     return sizes;
+}
+
+// By the median distance between points that follow each other.
+RayCasting chooseCasting(const RayCaster& caster, const BakeItems& items, std::span<const uint32_t> order) {
+    std::vector<float> distances;
+    const auto place = [&](uint32_t item) { return items.points[items.begin(item)].position; };
+    const auto hasPoint = [&](uint32_t item) { return items.begin(item) < items.end(item); };
+    for (size_t i = 1; i < order.size(); ++i)
+        if (hasPoint(order[i - 1]) && hasPoint(order[i]))
+            distances.push_back((place(order[i]) - place(order[i - 1])).norm());
+    if (distances.empty()) return RayCasting::Stream;
+    const auto median = distances.begin() + ptrdiff_t(distances.size() / 2);
+    std::nth_element(distances.begin(), median, distances.end());
+    return caster.packetsAreFaster(*median) ? RayCasting::Packets : RayCasting::Stream;
 }
 
 void markInside(const RayCaster& caster, const BakeItems& items, const BakeOptions& options,
@@ -214,7 +231,7 @@ BakeResult bakeItems(const RayCaster& caster, const BakeItems& items, const Bake
     const DirectionLevels levels(setSizes(options), options.shOrder);
     const ProjectionTables tables(options.shOrder, options.projection);
     const std::vector<uint32_t> order = mortonOrderOfItems(items);
-    const Bake bake{caster, items, options, levels, tables, columns};
+    const Bake bake{caster, items, options, levels, tables, chooseCasting(caster, items, order), columns};
     levels[0];
     result.stages.setUp = clock.lap();
     std::mutex sums;

@@ -299,7 +299,7 @@ TEST(ExactBake, ThreadsAndBlocksChangeNoBit) {
             return bakeAll(scene, options);
         };
         const DomainBakes reference = bakeWith(1, 256);
-        for (const int blockPoints : {1, 7, 64, 256}) {
+        for (const int blockPoints : {64, 128, 192}) {
             const DomainBakes other = bakeWith(2, blockPoints);
             expectNear(other, reference, 4, {}, setting.name + ", blocks of " + std::to_string(blockPoints));
             EXPECT_EQ(other.texels.baked.inside, reference.texels.baked.inside);
