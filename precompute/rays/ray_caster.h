@@ -48,8 +48,8 @@ class RayCaster {
     /// @param spacing  between neighbouring origins, scene units
     bool packetsAreFaster(float spacing) const;
 
-    /// Rays of any origins and directions, for speed in an order in which those that follow each other are near
-    /// in both. What comes out for a ray does not depend on the others.
+    /// Rays of any origins and directions, for speed in an order in which those that follow each other are
+    /// near in both. What comes out for a ray does not depend on the others.
     /// @param origins, directions, occluded  [N]
     void occludedRays(std::span<const Vec3f> origins, std::span<const Vec3f> directions,
                       std::span<uint8_t> occluded) const;

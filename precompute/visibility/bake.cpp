@@ -94,8 +94,6 @@ std::vector<Corner> thinned(const std::vector<Corner>& corners, double sum) {
 
 // Directions over the sphere that tell whether a sub-point is inside geometry; half lie above the horizon.
 constexpr int kHiddenDirections = 64;
-// A sub-point of which so many rays met no back of a face is outside: from inside half or more would have.
-constexpr int kOpenRays = 6;
 
 // As for whole items, with fewer rays.
 bool looksHidden(const RayCaster& caster, const SurfacePoint& point, std::span<const Vec3f> directions,
@@ -103,7 +101,7 @@ bool looksHidden(const RayCaster& caster, const SurfacePoint& point, std::span<c
     InsideCount count;
     for (const Vec3f& direction : directions) {
         if (!(point.normal.dot(direction) > 0)) continue;
-        if (count.rays >= kOpenRays && count.backs == 0) return false;
+        if (count.isDecided()) break;
         count.add(caster, point, direction, doubleSided);
     }
     return count.isInside();

@@ -24,9 +24,9 @@ struct BakeOptions {
     /// and finer sets of directions (kAdaptiveSets) and stops at the first one whose estimated error
     /// (BakeResult::error) is at most this; of each finer set only directions next to a silhouette are traced
     double error = 0;
-    int finestSet = 16384;   ///< adaptive: the last of kAdaptiveSets to be used
-    int blockPoints = 256;   ///< 64, 128, 192 or 256 points that take one direction at a time; for speed alone
-    Projection projection;   ///< weighted for irradiance, or plain
+    int finestSet = 16384;  ///< adaptive: the last of kAdaptiveSets to be used
+    int blockPoints = 256;  ///< 64, 128, 192 or 256 points that take one direction at a time; for speed alone
+    Projection projection;  ///< weighted for irradiance, or plain
     bool findInside = true;  ///< classify points inside geometry (most hits are back faces)
     /// [triangles] or empty: non-zero where both sides are a proper outside (a curtain, a leaf), so that
     /// meeting the back does not mean to be inside

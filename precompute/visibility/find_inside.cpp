@@ -9,7 +9,6 @@ namespace prt {
 namespace {
 
 constexpr int kDirections = 128;   // over the sphere; half of them lie above the horizon
-constexpr int kOpenRays = 16;      // as many without a back: outside, from inside most would have met one
 constexpr float kAoLimit = 0.35f;  // an inside point is nearly dark
 
 }  // namespace
@@ -42,7 +41,7 @@ std::vector<uint8_t> findInside(const RayCaster& caster, const BakeItems& items,
             if (ao[item] >= kAoLimit || items.begin(item) == items.end(item)) continue;
             InsideCount count;
             for (uint32_t k = 0; k < directions.size(); ++k) {
-                if (count.rays >= kOpenRays && count.backs == 0) break;
+                if (count.isDecided()) break;
                 const SurfacePoint& point = items.points[subPointOfDirection(items, item, k)];
                 if (point.normal.dot(directions[k]) > 0) count.add(caster, point, directions[k], doubleSided);
             }

@@ -22,6 +22,9 @@ struct InsideCount {
              std::span<const uint8_t> doubleSided);
     /// At least a quarter of the rays hit something, and most of those meet its back.
     bool isInside() const { return backs * 2 > hits && hits * 4 >= rays; }
+    /// Enough rays, spread over the hemisphere, to be sure: from inside most meet a back, from outside few
+    /// do.
+    bool isDecided() const { return (rays >= 8 && backs == 0) || (rays >= 24 && backs * 4 >= rays * 3); }
 };
 
 /// 1 for items inside geometry. More open ones than an inside one can be are not examined.
