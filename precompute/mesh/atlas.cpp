@@ -10,6 +10,7 @@
 
 #include "precompute/base/error.h"
 #include "precompute/mesh/atlas_parts.h"
+#include "precompute/mesh/interrupt.h"
 
 namespace prt {
 namespace {
@@ -166,6 +167,7 @@ void applyLayout(Scene& scene, const Layout& layout, int texels) {
     for (ScenePrimitive primitive : scene.primitives) {
         const auto firstVertex = uint32_t(result.positions.size());
         for (uint32_t h = primitive.firstIndex; h < primitive.firstIndex + primitive.indexCount; ++h) {
+            throwIfInterruptedAt(h);
             const uint32_t vertex = scene.indices[h], chart = layout.charts.ofFace[h / 3];
             const Eigen::Vector2d local =
                 layout.shapes[chart].project(scene.positions[vertex]) * layout.packing.texelsPerUnit;

@@ -10,6 +10,7 @@
 #include "precompute/base/error.h"
 #include "precompute/base/parallel.h"
 #include "precompute/mesh/atlas_parts.h"
+#include "precompute/mesh/interrupt.h"
 
 namespace prt {
 namespace {
@@ -72,6 +73,7 @@ class Grower {
     const double cosCone_;
     std::vector<uint32_t> seeds_;
     Charts charts_;
+    size_t steps_ = 0;  ///< of all queues
 };
 
 /// Faces by the area of the flat region they lie in, largest first.
@@ -99,12 +101,8 @@ std::vector<uint32_t> Grower::seedOrder() const {
 }
 
 void Grower::growFromSeeds() {
-    size_t done = 0;
-    for (uint32_t seed : seeds_) {
-        if (charts_.ofFace[seed] != kNone) continue;
-        if (++done % 1024 == 1) throwIfInterrupted();
-        growOne(seed, charts_.count++);
-    }
+    for (uint32_t seed : seeds_)
+        if (charts_.ofFace[seed] == kNone) growOne(seed, charts_.count++);
 }
 
 void Grower::growOne(uint32_t seed, uint32_t chart) {
@@ -113,6 +111,7 @@ void Grower::growOne(uint32_t seed, uint32_t chart) {
     double area = 0;
     queue.push({0, seed, chart});
     while (!queue.empty()) {
+        throwIfInterruptedAt(steps_++);
         const Candidate next = queue.top();
         queue.pop();
         if (charts_.ofFace[next.face] != kNone || (next.face != seed && !inCone(next.face, sum))) continue;
@@ -156,6 +155,7 @@ void Grower::relax() {
         if (seed[c] != kNone) queue.push({0, seed[c], c});
     std::fill(charts_.ofFace.begin(), charts_.ofFace.end(), kNone);
     while (!queue.empty()) {
+        throwIfInterruptedAt(steps_++);
         const Candidate next = queue.top();
         queue.pop();
         if (charts_.ofFace[next.face] != kNone ||
@@ -189,6 +189,7 @@ AtlasMesh makeAtlasMesh(const Scene& scene, double creaseDeg) {
     mesh.area.resize(mesh.faces());
     mesh.centroid.resize(mesh.faces());
     for (uint32_t f = 0; f < mesh.faces(); ++f) {
+        throwIfInterruptedAt(f);
         const Vec3f &a = mesh.corner(3 * f), &b = mesh.corner(3 * f + 1), &c = mesh.corner(3 * f + 2);
         mesh.area[f] = float(0.5 * triangleCross(a, b, c).norm());
         mesh.centroid[f] = ((a.cast<double>() + b.cast<double>() + c.cast<double>()) / 3).cast<float>();
@@ -229,6 +230,7 @@ void ejectLeaningFaces(const AtlasMesh& mesh, Charts& charts, double angleDeg) {
         std::vector<uint32_t> facesLeft(before, 0);
         for (uint32_t c : charts.ofFace) ++facesLeft[c];
         for (uint32_t f = 0; f < mesh.faces(); ++f) {
+            throwIfInterruptedAt(f);
             const uint32_t c = charts.ofFace[f];
             if (facesLeft[c] == 1 || withinCone(mesh.normal[f], mean[c], limit)) continue;
             --facesLeft[c];

@@ -7,6 +7,7 @@
 
 #include "precompute/base/error.h"
 #include "precompute/mesh/atlas_parts.h"
+#include "precompute/mesh/interrupt.h"
 
 namespace prt {
 namespace {
@@ -45,7 +46,10 @@ class Merger {
                 return area_[a] != area_[b] ? area_[a] < area_[b] : a < b;
             });
             bool merged = false;
-            for (uint32_t c : small) merged |= mergeOne(c);
+            for (size_t i = 0; i < small.size(); ++i) {
+                throwIfInterruptedAt(i);
+                merged |= mergeOne(small[i]);
+            }
             if (!merged) break;
         }
         splitIntoConnected(mesh_, charts_);

@@ -9,6 +9,7 @@
 #include "precompute/base/error.h"
 #include "precompute/base/parallel.h"
 #include "precompute/mesh/atlas_parts.h"
+#include "precompute/mesh/interrupt.h"
 
 namespace prt {
 namespace {
@@ -130,7 +131,8 @@ uint32_t layOut(const AtlasMesh& mesh, const Charts& charts, uint32_t chart, std
         layerOf[seed] = layer;
         queue.assign(1, seed);
         waiting.clear();
-        for (size_t at = 0; at < queue.size(); ++at)
+        for (size_t at = 0; at < queue.size(); ++at) {
+            throwIfInterruptedAt(at);
             for (uint32_t h = 3 * queue[at]; h < 3 * queue[at] + 3; ++h) {
                 if (mesh.twin[h] == kNone) continue;
                 const uint32_t other = mesh.twin[h] / 3;
@@ -139,6 +141,7 @@ uint32_t layOut(const AtlasMesh& mesh, const Charts& charts, uint32_t chart, std
                 layerOf[other] = fits ? layer : kWaits;
                 (fits ? queue : waiting).push_back(other);
             }
+        }
         for (uint32_t face : waiting) layerOf[face] = kNone;
         ++layer;
     }

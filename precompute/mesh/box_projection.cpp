@@ -4,6 +4,7 @@
 
 #include "precompute/base/parallel.h"
 #include "precompute/mesh/corner_mesh.h"
+#include "precompute/mesh/interrupt.h"
 
 namespace prt {
 namespace {
@@ -34,6 +35,7 @@ void makeTexcoords(CornerMesh& mesh, const std::vector<Vec3f>& faceNormal, doubl
     const Vec3d origin = (low.cast<double>() / uvScale).array().floor();
 
     for (size_t t = 0; t < mesh.triangleCount(); ++t) {
+        throwIfInterruptedAt(t);
         uint32_t* index = mesh.texcoord.data() + 3 * t;
         bool complete = true;
         for (size_t k = 0; k < 3; ++k)

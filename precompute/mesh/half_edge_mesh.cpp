@@ -6,6 +6,7 @@
 
 #include <OpenMesh/Core/Mesh/TriConnectivity.hh>
 
+#include "precompute/mesh/interrupt.h"
 #include "precompute/mesh/topology.h"
 
 namespace prt {
@@ -26,6 +27,7 @@ std::vector<Fan> findFans(std::span<const uint32_t> twin, std::vector<uint32_t>&
     std::vector<Fan> fans;
     fanOf.assign(twin.size(), kNone);
     for (uint32_t h = 0; h < twin.size(); ++h) {
+        throwIfInterruptedAt(h);
         if (fanOf[h] != kNone) continue;
         uint32_t first = h;
         while (twin[first] != kNone) {
@@ -75,11 +77,13 @@ HalfEdgeMesh::HalfEdgeMesh(std::span<const uint32_t> twin) : structure_(std::mak
     for (size_t v = 0; v < fans.size(); ++v) mesh.new_vertex();
     std::vector<HalfedgeHandle> handle(twin.size());
     for (uint32_t h = 0; h < twin.size(); ++h) {
+        throwIfInterruptedAt(h);
         if (twin[h] != kNone && h > twin[h]) continue;
         handle[h] = mesh.new_edge(VertexHandle(int(fanOf[h])), VertexHandle(int(fanOf[nextCorner(h)])));
         if (twin[h] != kNone) handle[twin[h]] = mesh.opposite_halfedge_handle(handle[h]);
     }
     for (uint32_t first = 0; first < twin.size(); first += 3) {
+        throwIfInterruptedAt(first / 3);
         const FaceHandle face = mesh.new_face();
         mesh.set_halfedge_handle(face, handle[first]);
         for (uint32_t h = first; h < first + 3; ++h) {
@@ -135,12 +139,14 @@ std::vector<uint32_t> HalfEdgeMesh::components(std::span<const uint32_t> label, 
     const auto& mesh = structure_->mesh;
     std::vector<uint32_t> result(faceCount(), kNone);
     std::vector<uint32_t> open;
+    size_t done = 0;
     count = 0;
     for (uint32_t seed = 0; seed < result.size(); ++seed) {
         if (result[seed] != kNone) continue;
         result[seed] = count;
         open.push_back(seed);
         while (!open.empty()) {
+            throwIfInterruptedAt(done++);
             const FaceHandle face{int(open.back())};
             open.pop_back();
             HalfedgeHandle h = mesh.halfedge_handle(face);

@@ -11,6 +11,7 @@
 
 #include "precompute/base/atomic_file.h"
 #include "precompute/base/error.h"
+#include "precompute/mesh/interrupt.h"
 #include "precompute/mesh/readers.h"
 #include "precompute/mesh/text_scanner.h"
 
@@ -314,6 +315,7 @@ void PlyReader::readVertices(const Element& element) {
     mesh_.positions.reserve(element.count);
     std::vector<double> value(element.properties.size()), values;
     for (size_t i = 0; i < element.count; ++i) {
+        throwIfInterruptedAt(i);
         for (size_t p = 0; p < element.properties.size(); ++p) {
             readProperty(element.properties[p], element, i, values);
             value[p] = values.empty() ? 0 : values[0];
@@ -334,6 +336,7 @@ void PlyReader::readFaces(const Element& element) {
     const int wedge = findProperty(element, {"texcoord"}, true);
     std::vector<double> corners, wedges, other;
     for (size_t i = 0; i < element.count; ++i) {
+        throwIfInterruptedAt(i);
         for (int p = 0; p < int(element.properties.size()); ++p)
             readProperty(element.properties[size_t(p)], element, i,
                          p == list    ? corners

@@ -7,6 +7,7 @@
 #include "precompute/base/parallel.h"
 #include "precompute/mesh/corner_mesh.h"
 #include "precompute/mesh/half_edge_mesh.h"
+#include "precompute/mesh/interrupt.h"
 
 namespace prt {
 namespace {
@@ -61,6 +62,7 @@ void makeNormals(CornerMesh& mesh, const Adjacency& adjacency, const std::vector
     std::vector<uint32_t> normalOfFan(fans.vertexCount(), kNone);
     std::vector<Vec3d> sums;
     for (uint32_t h = 0; h < mesh.position.size(); ++h) {
+        throwIfInterruptedAt(h);
         uint32_t& slot = normalOfFan[fanOf[h]];
         if (slot == kNone) {
             slot = uint32_t(sums.size());

@@ -11,6 +11,7 @@
 #include "precompute/mesh/atlas.h"
 #include "precompute/mesh/corner_mesh.h"
 #include "precompute/mesh/index_table.h"
+#include "precompute/mesh/interrupt.h"
 
 namespace prt {
 namespace {
@@ -209,7 +210,6 @@ Scene Assembler::assemble(LoadMeshReport& report) {
     std::stable_sort(order.begin(), order.end(),
                      [&](uint32_t a, uint32_t b) { return mesh_.material[a] < mesh_.material[b]; });
     for (size_t i = 0; i < order.size();) {
-        throwIfInterrupted();
         size_t end = i;
         while (end < order.size() && mesh_.material[order[end]] == mesh_.material[order[i]]) ++end;
         ScenePrimitive primitive;
@@ -217,9 +217,11 @@ Scene Assembler::assemble(LoadMeshReport& report) {
         primitive.firstVertex = uint32_t(scene_.positions.size());
         primitive.firstIndex = uint32_t(scene_.indices.size());
         IndexTable table(end - i);
-        for (; i < end; ++i)
+        for (; i < end; ++i) {
+            throwIfInterruptedAt(scene_.indices.size() / 3);
             for (uint32_t k = 0; k < 3; ++k)
                 scene_.indices.push_back(addCorner(table, primitive.firstVertex, 3 * order[i] + k));
+        }
         primitive.vertexCount = uint32_t(scene_.positions.size()) - primitive.firstVertex;
         primitive.indexCount = uint32_t(scene_.indices.size()) - primitive.firstIndex;
         scene_.primitives.push_back(primitive);
@@ -263,6 +265,7 @@ Scene prepareCorners(CornerMesh mesh, const std::string& where, const LoadMeshOp
     throwIfInterrupted();
     makeTexcoords(mesh, faceNormal, options.uvScale);
     checkTangents(mesh, givenNormals, givenTexcoords);
+    throwIfInterrupted();
 
     const bool hadUv1 = !mesh.uv1Index.empty();
     if (mayBeAtlas(mesh)) {
@@ -278,6 +281,7 @@ Scene prepareCorners(CornerMesh mesh, const std::string& where, const LoadMeshOp
     mesh.uv1Index.clear();
     Scene scene = Assembler(mesh, faceNormal, givenNormals, givenTexcoords).assemble(report);
     countRepair(report, "invalid_atlas_dropped", hadUv1 ? 1 : 0);
+    throwIfInterrupted();
     validateScene(scene, where);
     return scene;
 }

@@ -11,6 +11,7 @@
 #include "precompute/base/error.h"
 #include "precompute/base/parallel.h"
 #include "precompute/mesh/corner_mesh.h"
+#include "precompute/mesh/interrupt.h"
 
 namespace prt {
 namespace {
@@ -121,6 +122,7 @@ void dropDuplicates(CornerMesh& mesh, LoadMeshReport& report) {
     size_t dropped = 0, pairs = 0;
     std::vector<FaceKey> keys;
     for (size_t v = 0; v + 1 < first.size(); ++v) {
+        throwIfInterruptedAt(v);
         if (first[v + 1] - first[v] < 2) continue;
         keys.clear();
         for (uint32_t i = first[v]; i < first[v + 1]; ++i) keys.push_back(faceKey(mesh, byLow[i]));

@@ -6,6 +6,7 @@
 
 #include "precompute/base/check.h"
 #include "precompute/mesh/corner_mesh.h"
+#include "precompute/mesh/interrupt.h"
 
 namespace prt {
 namespace {
@@ -54,6 +55,7 @@ void makeTangents(Scene& scene, const std::vector<uint8_t>& keep) {
     std::vector<Vec3d> sum(scene.vertexCount(), Vec3d(0, 0, 0));
     std::vector<float> side(scene.vertexCount(), 0);
     for (size_t t = 0; t < scene.triangleCount(); ++t) {
+        throwIfInterruptedAt(t);
         const uint32_t* triangle = scene.indices.data() + 3 * t;
         const Vec3d direction = tangentDirection(scene, triangle);
         if (direction.squaredNorm() == 0) continue;

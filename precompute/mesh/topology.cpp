@@ -10,6 +10,7 @@
 
 #include "precompute/base/parallel.h"
 #include "precompute/mesh/index_table.h"
+#include "precompute/mesh/interrupt.h"
 
 namespace prt {
 namespace {
@@ -56,6 +57,7 @@ std::vector<uint32_t> weldPositions(std::span<const Vec3f> positions, uint32_t& 
     std::vector<uint32_t> firstOf;
     IndexTable table(positions.size() / 2);
     for (size_t i = 0; i < positions.size(); ++i) {
+        throwIfInterruptedAt(i);
         const Vec3f& p = positions[i];
         const uint64_t hash = mixHash(mixHash(floatKey(p.x()), floatKey(p.y())), floatKey(p.z()));
         const auto next = uint32_t(firstOf.size());
@@ -102,6 +104,7 @@ Adjacency pairHalfEdges(std::span<const uint32_t> corners, uint32_t vertexCount,
         for (uint32_t h = 0; h < count; ++h) byLower[cursor[lower(h)]++] = h;
     }
     for (uint32_t v = 0; v < vertexCount; ++v) {
+        throwIfInterruptedAt(v);
         const auto begin = byLower.begin() + first[v], end = byLower.begin() + first[v + 1];
         std::sort(begin, end, [&](uint32_t a, uint32_t b) {
             const uint32_t ua = upper(a), ub = upper(b);
