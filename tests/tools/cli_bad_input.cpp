@@ -235,11 +235,13 @@ TEST(BadInput, OptionOutOfRange) {
     Folder folder;
     folder.write("box.obj", openBoxObj());
     const std::vector<std::pair<std::string, std::string>> bad = {
-        {"--order", "0"},       {"--order", "11"},  {"--order", "six"}, {"--texels", "-5"},
-        {"--texels", "100000"}, {"--rays", "0"},    {"--rays", "1e3"},  {"--uv-scale", "0"},
-        {"--uv-scale", "nan"},  {"--threads", "-1"}};
+        {"--order", "0"},       {"--order", "11"},   {"--order", "six"},    {"--texels", "-5"},
+        {"--texels", "100000"}, {"--rays", "0"},     {"--rays", "1e3"},     {"--error", "0"},
+        {"--error", "2"},       {"--uv-scale", "0"}, {"--uv-scale", "nan"}, {"--threads", "-1"}};
     for (const auto& [option, value] : bad)
         expectRefused(folder, {"precompute", "box.obj", "-o", "out.prt", option, value}, kUsage, {option});
+    expectRefused(folder, {"precompute", "box.obj", "-o", "out.prt", "--rays", "64", "--error", "0.1"},
+                  kUsage, {"--rays", "--error"});
 }
 
 TEST(BadInput, UnknownOptionAndCommand) {
@@ -288,6 +290,8 @@ TEST(BadInput, RelightOptions) {
 TEST(BadInput, MeasureOptions) {
     Folder folder;
     const std::vector<std::vector<std::string>> bad = {
+        {"bake", "--texels", "8"},
+        {"bake", "--rounds", "0"},
         {"basis", "--signal", "sound"},
         {"basis", "--signals", "3"},
         {"basis", "--max-order", "17"},
@@ -312,17 +316,21 @@ TEST(BadInput, MeasureOptions) {
         {"rotation", "--table-angles", "1"},
         {"rotation", "--rounds", "-1"},
         {"rotation", "--table-angles", "many"},
-        {"rotation", "--plot", "bmp"}};
+        {"rotation", "--plot", "bmp"},
+        {"sampling", "--sets", "halton", "box.obj"},
+        {"sampling", "--points", "0", "box.obj"}};
     for (const auto& words : bad) {
         std::vector<std::string> arguments = {"measure", "--quiet"};
         arguments.insert(arguments.begin() + 1, words.begin(), words.end());
         expectRefused(folder, arguments, kUsage, {"prt measure " + words[0], words[1]});
     }
-    for (const char* name : {"basis", "parameterization", "product", "rotation"})
+    for (const char* name : {"bake", "basis", "parameterization", "product", "rotation"})
         expectRefused(folder, {"measure", name, "--frobnicate"}, kUsage, {"--frobnicate"});
-    expectRefused(folder, {"measure", "projection", "box.obj", "--frobnicate"}, kUsage, {"--frobnicate"});
+    for (const std::string name : {"projection", "sampling"}) {
+        expectRefused(folder, {"measure", name, "box.obj", "--frobnicate"}, kUsage, {"--frobnicate"});
+        expectRefused(folder, {"measure", name, "absent.obj", "--quiet"}, kInput, {"absent.obj"});
+    }
     expectRefused(folder, {"measure", "projection"}, kUsage, {"prt measure projection", "MESH"});
-    expectRefused(folder, {"measure", "projection", "absent.obj", "--quiet"}, kInput, {"absent.obj"});
     expectRefused(folder, {"measure", "weight"}, kUsage, {"weight", "prt measure --help"});
 }
 

@@ -7,8 +7,8 @@ namespace prt::test {
 namespace {
 
 const std::vector<std::string> kCommands = {"precompute", "compress", "tabulate", "relight", "info"};
-const std::vector<std::string> kMeasurements = {"basis", "parameterization", "product", "projection",
-                                                "rotation"};
+const std::vector<std::string> kMeasurements = {"bake",       "basis",    "parameterization", "product",
+                                                "projection", "rotation", "sampling"};
 
 TEST(Options, NoArgumentsPrintsUsageAndFails) {
     Folder folder;
@@ -82,7 +82,10 @@ TEST(Options, JsonOnStandardOutputIsNothingButJson) {
         {"measure", "rotation", "--orders", "3", "--rounds", "1", "--error-orders", "3", "--hsh-orders", "2",
          "--table-angles", "5", "--plot", "none"},
         {"measure", "projection", "box.obj", "--points", "2", "--population", "20", "--rays", "64",
-         "--orders", "3", "--tilts", "0", "--env", "sky:overcast", "--plot", "none"}};
+         "--orders", "3", "--tilts", "0", "--env", "sky:overcast", "--plot", "none"},
+        {"measure", "bake", "box.obj", "--texels", "32", "--rays", "32", "--rounds", "1", "--plot", "none"},
+        {"measure", "sampling", "box.obj", "--points", "8", "--counts", "32,64", "--truth", "512", "--sets",
+         "fibonacci", "--errors", "0.1", "--compare", "64", "--plot", "none"}};
     const std::vector<std::vector<std::string>> keys = {
         {"points", "rays", "rays_per_s", "seconds", "peak_rss_bytes", "validity"},
         {"components", "explained_variance", "relative_rmse", "seconds"},
@@ -93,7 +96,9 @@ TEST(Options, JsonOnStandardOutputIsNothingButJson) {
         {"measure", "points", "rows"},
         {"measure", "cpu", "rows"},
         {"measure", "cpu", "rows", "errors", "hsh_errors", "hsh_tables", "paper_times"},
-        {"measure", "rows", "summary", "meshes", "cone_deg"}};
+        {"measure", "rows", "summary", "meshes", "cone_deg"},
+        {"measure", "rows", "threads", "ceiling_rays_per_s", "pipeline_rays_per_s", "ratio", "embree_isa"},
+        {"measure", "rows", "equal_error", "adaptive", "meshes"}};
     for (size_t i = 0; i < commands.size(); ++i) {
         auto arguments = commands[i];
         arguments.insert(arguments.end(), {"--json", "-"});

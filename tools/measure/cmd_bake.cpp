@@ -54,7 +54,6 @@ Figure rateFigure(const BakeRates& rates, const std::vector<int>& threadCounts) 
         Panel panel{.title = threads == 1 ? "1 thread" : fmt::format("{} threads", threads),
                     .xLabel = "",
                     .yLabel = "million rays per second"};
-        panel.bars.push_back({"", 0});  // so that the axis starts at zero
         for (const BakeRate& row : rates.rates) {
             if (row.threads != threads) continue;
             const bool bake = row.arrangement.starts_with("pipeline") || row.arrangement == "adaptive";

@@ -75,7 +75,10 @@ std::string bars(const Panel& panel, size_t index) {
         data + axes(panel) + "unset key\nset style fill solid 0.85 noborder\nset boxwidth 0.7\n";
     out += fmt::format("set xtics rotate by -40 nomirror\nset xrange [-0.7:{}]\n",
                        double(panel.bars.size()) - 0.3);
-    if (panel.logY && std::isfinite(lowest)) out += fmt::format("set yrange [{}:*]\n", lowest / 2);
+    if (!panel.logY)
+        out += "set yrange [0:*]\n";
+    else if (std::isfinite(lowest))
+        out += fmt::format("set yrange [{}:*]\n", lowest / 2);
     out += fmt::format("plot for [g=0:{}] $p{} using 0:(column(3)==g ? column(2) : NaN):xtic(1) with boxes ",
                        kColourCount - 1, index);
     return out + "lc rgb word(colours, g + 1)\n";
