@@ -15,6 +15,7 @@
 #include "precompute/base/parallel.h"
 #include "precompute/math/directions.h"
 #include "precompute/visibility/find_inside.h"
+#include "precompute/visibility/orientations.h"
 #include "precompute/visibility/trace_blocks.h"
 
 namespace prt {
@@ -161,6 +162,16 @@ TexelItems makeTexelItems(const TexelSurface& surface, const std::vector<uint8_t
     return items;
 }
 
+std::vector<uint8_t> texelOrientations(const TexelSurface& surface) {
+    std::vector<uint8_t> orientations(surface.points.size());
+    for (size_t t = 0; t < surface.pointOfTexel.size(); ++t) {
+        const auto x = uint32_t(t % size_t(surface.width)), y = uint32_t(t / size_t(surface.width));
+        if (surface.pointOfTexel[t] != kNoPoint)
+            orientations[surface.pointOfTexel[t]] = texelOrientation(x, y);
+    }
+    return orientations;
+}
+
 }  // namespace
 
 BakeResult bakeVisibility(const RayCaster& caster, std::span<const SurfacePoint> points,
@@ -185,6 +196,8 @@ BakeResult bakeTexelVisibility(const RayCaster& caster, const TexelSurface& surf
     std::transform(surface.points.begin(), surface.points.end(), normals.begin(),
                    [](const SurfacePoint& point) { return point.normal; });
     items.normals = normals;
+    const std::vector<uint8_t> orientations = texelOrientations(surface);
+    items.orientations = orientations;
     return bakeItems(caster, items, options, "points");
 }
 
@@ -245,13 +258,18 @@ BakeResult bakeVertexVisibility(const RayCaster& caster, const VertexPoints& ver
     }
     first.push_back(uint32_t(vertices.points.size()));
     std::vector<Vec3f> normals(owner.size());
-    for (size_t i = 0; i < owner.size(); ++i) normals[i] = vertices.normals[owner[i]];
+    std::vector<uint8_t> orientations(owner.size());
+    for (size_t i = 0; i < owner.size(); ++i) {
+        normals[i] = vertices.normals[owner[i]];
+        orientations[i] = vertexOrientation(owner[i]);
+    }
 
     BakeItems items;
     items.points = vertices.points;
     items.firstPoint = first;
     items.shareEnd = shareEnd;
     items.normals = normals;
+    items.orientations = orientations;
     const BakeResult baked = bakeItems(caster, items, options, "vertices");
 
     BakeResult result;

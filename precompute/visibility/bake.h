@@ -58,7 +58,7 @@ struct BakeResult {
     BakeStages stages;        ///< where it went
 };
 
-/// Visibility at points, by one set of world-fixed directions (spherical Fibonacci) shared by all points;
+/// Visibility at points, by world-fixed sets of directions (spherical Fibonacci) shared by all points;
 /// blocks of neighbouring points take one direction at a time. Same bits for any number of threads, and for a
 /// point whatever the other points are.
 ///   plain: v_i = (4π/N) Σ_k V(ω_k) Y_i(ω_k)
@@ -74,7 +74,8 @@ BakeResult bakeVisibility(const RayCaster& caster, std::span<const SurfacePoint>
 /// nothing on or in that surface, is its point, to the bit. Others stand for their parts (on a chart's border
 /// the point would be one that a neighbouring surface touches), less those inside geometry while any is not;
 /// the directions are dealt to the parts by share, so the cost is that of one point. Each part keeps its own
-/// horizon; weighted projection is about the texel's normal.
+/// horizon; weighted projection is about the texel's normal. Texels take the directions in four orientations,
+/// dealt so that every 2×2 have them all: errors of neighbours differ, and leave no bands on smooth surfaces.
 /// @throws UsageError, Interrupted
 BakeResult bakeTexelVisibility(const RayCaster& caster, const TexelSurface& surface,
                                const BakeOptions& options);
@@ -97,7 +98,8 @@ inline constexpr int kMaxSubPoints = 32;
 /// area
 ///               has no points, and bakes to zeros
 VertexPoints makeVertexPoints(const Scene& scene);
-/// As bakeVisibility, one result per vertex; weighted projection is about the vertex's normal.
+/// As bakeVisibility, one result per vertex; weighted projection is about the vertex's normal. Vertices take
+/// the directions in four orientations, by their index.
 BakeResult bakeVertexVisibility(const RayCaster& caster, const VertexPoints& vertices,
                                 const BakeOptions& options);
 

@@ -19,10 +19,13 @@ struct BakeItems {
     /// [items] unit, what projection weighted for irradiance turns about; empty: items are points, each its
     /// own
     std::span<const Vec3f> normals;
+    /// [items] index into setOrientations(); empty: all the first
+    std::span<const uint8_t> orientations;
 
     size_t count() const { return firstPoint.empty() ? points.size() : firstPoint.size() - 1; }
     uint32_t begin(uint32_t item) const { return firstPoint.empty() ? item : firstPoint[item]; }
     uint32_t end(uint32_t item) const { return firstPoint.empty() ? item + 1 : firstPoint[item + 1]; }
+    int orientation(uint32_t item) const { return orientations.empty() ? 0 : int(orientations[item]); }
     /// Unit; zero where the item has no points.
     Vec3f normal(uint32_t item) const {
         if (begin(item) == end(item)) return Vec3f::Zero();

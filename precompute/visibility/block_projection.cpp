@@ -9,6 +9,7 @@
 #include "precompute/base/check.h"
 #include "precompute/base/error.h"
 #include "precompute/math/sh.h"
+#include "precompute/math/sh_rotation.h"
 
 namespace prt {
 namespace {
@@ -44,7 +45,7 @@ void BlockProjection::listVisible(const LevelMasks& masks, size_t start, size_t 
 }
 
 void BlockProjection::addChunk(const DirectionLevel& level, size_t i, size_t start, size_t count) {
-    const std::array<CosineSum, 2> open = cosinesAbout({&level.x[start], &level.y[start], &level.z[start]},
+    const std::array<CosineSum, 2> open = cosinesAbout({&set_->x[start], &set_->y[start], &set_->z[start]},
                                                        count, normals_[i].data(), cosines_.data());
     const float* basis = &level.basis[start * stride_];
     for (size_t half = 0; half < 2; ++half) {
@@ -61,11 +62,18 @@ void BlockProjection::addChunk(const DirectionLevel& level, size_t i, size_t sta
     }
 }
 
-void BlockProjection::project(const DirectionLevel& level, const LevelMasks& masks,
+void BlockProjection::project(const DirectionLevel& level, int orientation, const LevelMasks& masks,
                               std::span<const Vec3f> normals) {
     PRT_CHECK_EQ(level.stride, stride_);
     PRT_CHECK_LE(normals.size(), kMostBlockPoints);
-    normals_ = normals;
+    set_ = &level.turned[size_t(orientation)];
+    worldFromSet_ = setOrientations()[size_t(orientation)];
+    turned_ = orientation != 0;
+    normals_.assign(normals.begin(), normals.end());
+    setNormals_ = normals_;
+    if (turned_)
+        for (Vec3f& normal : setNormals_)
+            normal = (worldFromSet_.transpose() * normal.cast<double>()).cast<float>();
     directions_ = level.size();
     std::fill(sums_.begin(), sums_.end(), 0.0f);
     for (size_t half = 0; half < 2; ++half) {
@@ -84,7 +92,8 @@ void BlockProjection::expansion(size_t i, std::span<float> out) const {
     const float sampleSr = float(4 * std::numbers::pi / double(directions_));
     for (size_t c = 0; c < out.size(); ++c) out[c] = (sums(0, i)[c] + sums(1, i)[c]) * sampleSr;
     if (tables_.weighting && normals_[i] != Vec3f::Zero())
-        tables_.weighting->projection.solve(normals_[i], out, openness(i) * float(std::numbers::pi), out);
+        tables_.weighting->projection.solve(setNormals_[i], out, openness(i) * float(std::numbers::pi), out);
+    if (turned_) rotateSh(worldFromSet_, tables_.shOrder, std::span<const float>(out), out);
 }
 
 double BlockProjection::halfSetDifference(size_t i) const {
@@ -98,9 +107,9 @@ double BlockProjection::halfSetDifference(size_t i) const {
     // Expansions are linear in the sums and the irradiance, and so is their difference.
     if (tables_.weighting)
         tables_.weighting->projection.solve(
-            normals_[i], difference,
+            setNormals_[i], difference,
             (openness(i) - seenShare(seen_[0][i], open_[0][i])) * float(std::numbers::pi), difference);
-    return tables_.norm.evaluate(normals_[i], difference);
+    return tables_.norm.evaluate(setNormals_[i], difference);
 }
 
 }  // namespace prt

@@ -39,10 +39,12 @@ class BlockProjection {
     /// @param stride  of the levels' tables
     BlockProjection(const ProjectionTables& tables, size_t stride);
 
-    /// @param normals  [items of the block] unit; zero: no points, everything comes out zero
-    void project(const DirectionLevel& level, const LevelMasks& masks, std::span<const Vec3f> normals);
+    /// @param orientation  of the block
+    /// @param normals      [items of the block] unit, world; zero: no points, everything comes out zero
+    void project(const DirectionLevel& level, int orientation, const LevelMasks& masks,
+                 std::span<const Vec3f> normals);
 
-    /// @param out  [n²] the expansion of item i
+    /// @param out  [n²] the expansion of item i, world
     void expansion(size_t i, std::span<float> out) const;
     /// (1/π)∫V max(0, n·ω) about the item's normal by this set, as a share of what nothing blocks.
     float openness(size_t i) const { return seenShare(seen_[0][i] + seen_[1][i], open_[0][i] + open_[1][i]); }
@@ -57,7 +59,10 @@ class BlockProjection {
 
     const ProjectionTables& tables_;
     size_t stride_, directions_ = 0;
-    std::span<const Vec3f> normals_;
+    const TurnedSet* set_ = nullptr;
+    Mat3d worldFromSet_ = Mat3d::Identity();
+    bool turned_ = false;
+    std::vector<Vec3f> normals_, setNormals_;  // in the world, and turned back to the set as it is
     std::vector<uint16_t> lists_;  // [kMostBlockPoints × 2 × row] visible directions of a chunk, by half
     std::vector<float> sums_;      // [kMostBlockPoints × 2 × stride]
     std::vector<float> cosines_, weights_;

@@ -8,14 +8,21 @@
 #include <vector>
 
 #include "precompute/math/vec.h"
+#include "precompute/visibility/orientations.h"
 
 namespace prt {
 
+/// A set of directions in the world.
+struct TurnedSet {
+    std::vector<Vec3f> directions;
+    std::vector<float> x, y, z;  ///< the same
+};
+
 /// One spherical Fibonacci set.
 struct DirectionLevel {
-    std::vector<Vec3f> directions;
-    std::vector<float> x, y, z;
-    std::vector<float> basis;  ///< [N×stride] basis functions, rows padded with zeros
+    /// By each of setOrientations(): what is traced, and what horizons are about.
+    std::array<TurnedSet, kOrientations> turned;
+    std::vector<float> basis;  ///< [N×stride] basis functions of the set as it is, rows padded with zeros
     size_t stride = 0;         ///< paddedColumns(n²)
     /// [N] the nearest directions of the coarser set; empty for the first set
     std::vector<std::array<uint16_t, 4>> coarser;
@@ -26,7 +33,7 @@ struct DirectionLevel {
     /// Every so many directions one is traced whatever its neighbours say; 0: none.
     uint32_t auditStep = 0;
 
-    size_t size() const { return directions.size(); }
+    size_t size() const { return turned[0].directions.size(); }
 };
 
 /// Indices of the K directions of the Fibonacci set of `set.size()` that are nearest to `direction`, nearest

@@ -25,7 +25,7 @@ void addCosines(const RayBlock& block, const DirectionLevel& level, const LevelM
     if (!block.shared().any()) return;
     for (size_t k = 0; k < level.size(); ++k)
         (masks.above[k] & block.shared()).forEach([&](size_t i) {
-            const CosineSum cosine{double(block.cosineOf(i, uint32_t(k), level.directions[k])), 1};
+            const CosineSum cosine{double(block.cosineOf(level, i, uint32_t(k))), 1};
             cosines.open[i] += cosine;
             if (masks.visible[k].test(i)) cosines.seen[i] += cosine;
         });
@@ -64,7 +64,7 @@ bool spread(RayBlock& block, const DirectionLevel& level, bool up, LevelMasks& m
         const PointMask rays = doubtful(level, masks, traced, k);
         if (!rays.any()) continue;
         found = true;
-        const PointMask seen = block.visible(uint32_t(k), level.directions[k], rays, RayCasting::Stream);
+        const PointMask seen = block.visible(level, uint32_t(k), rays, RayCasting::Stream);
         masks.visible[k] = without(masks.visible[k], rays) | seen;
         traced[k] = traced[k] | rays;
     }
@@ -78,11 +78,10 @@ void traceAll(RayBlock& block, const DirectionLevel& level, RayCasting casting, 
     reset(level, masks);
     for (size_t k = 0; k < level.size(); ++k) {
         if (k % kInterruptStep == 0) throwIfInterrupted();
-        const Vec3f& direction = level.directions[k];
-        masks.above[k] = block.above(uint32_t(k), direction);
+        masks.above[k] = block.above(level, uint32_t(k));
         masks.visible[k] = {};
         if (!masks.above[k].any()) continue;
-        masks.visible[k] = block.visible(uint32_t(k), direction, masks.above[k], casting);
+        masks.visible[k] = block.visible(level, uint32_t(k), masks.above[k], casting);
     }
     addCosines(block, level, masks, cosines);
 }
@@ -95,15 +94,14 @@ void traceSilhouettes(RayBlock& block, const DirectionLevel& level, const LevelM
     size_t looked = 0;
     for (const uint16_t k : level.order) {
         if (looked++ % kInterruptStep == 0) throwIfInterrupted();
-        const Vec3f& direction = level.directions[k];
-        const PointMask above = block.above(k, direction);
+        const PointMask above = block.above(level, k);
         const Prediction prediction = predict(level.coarser[k], coarser);
         const bool audit = level.auditStep != 0 && k % level.auditStep == level.auditStep / 2;
         const PointMask rays = audit ? above : without(above, prediction.sure);
         masks.above[k] = above;
         masks.visible[k] = without(above & prediction.open & prediction.sure, rays);
         traced[k] = rays;
-        if (rays.any()) block.enqueue(k, direction, rays, masks.visible);
+        if (rays.any()) block.enqueue(level, k, rays, masks.visible);
     }
     block.flush(masks.visible);
     for (int round = 0; round < kSpreadRounds; ++round)

@@ -31,7 +31,9 @@ void findFacing(const float* x, const float* y, const float* z, float dx, float 
 void RayBlock::begin(std::span<const uint32_t> block) {
     PRT_CHECK_LE(block.size(), kMostBlockPoints);
     block_ = block;
+    orientation_ = block.empty() ? 0 : size_t(items_.orientation(block[0]));
     offset_.clear();
+    normal_.clear();
     sharedList_.clear();
     shared_ = {};
     normalX_.fill(0);  // faces no direction
@@ -41,18 +43,19 @@ void RayBlock::begin(std::span<const uint32_t> block) {
     Vec3f axis = Vec3f::Zero();
     for (size_t i = 0; i < block.size(); ++i) {
         const uint32_t first = items_.begin(block[i]), last = items_.end(block[i]);
-        firstPoint_[i] = first;
         offsetStart_[i] = uint32_t(offset_.size());
         for (uint32_t p = first; p < last; ++p) {
             const SurfacePoint& point = items_.points[p];
             offset_.push_back(caster_.offsetOrigin(point.position, point.normal));
-            axis += point.normal;
+            normal_.push_back(point.normal);
+            axis += normal_.back();
         }
         if (last == first + 1) {
-            normalX_[i] = items_.points[first].normal.x();
-            normalY_[i] = items_.points[first].normal.y();
-            normalZ_[i] = items_.points[first].normal.z();
+            normalX_[i] = normal_.back().x();
+            normalY_[i] = normal_.back().y();
+            normalZ_[i] = normal_.back().z();
         }
+        PRT_CHECK_EQ(size_t(items_.orientation(block[i])), orientation_);
         if (last <= first + 1) continue;
         shared_.set(i);
         sharedList_.push_back(uint32_t(i));
@@ -72,9 +75,7 @@ void RayBlock::setCone(Vec3f axis) {
     if (!(axis.norm() > 1e-3f)) return;
     axis.normalize();
     float smallest = 1;
-    for (const uint32_t item : block_)
-        for (uint32_t p = items_.begin(item); p < items_.end(item); ++p)
-            smallest = std::min(smallest, axis.dot(items_.points[p].normal));
+    for (const Vec3f& normal : normal_) smallest = std::min(smallest, axis.dot(normal));
     coneAxis_ = axis;
     coneSine_ = smallest > 0 ? std::sqrt(std::max(0.0f, 1 - smallest * smallest)) : 2.0f;
 }
@@ -84,11 +85,12 @@ uint32_t RayBlock::subPoint(size_t i, uint32_t k) const {
     return slots_[i * kSlots + ((hash_[i] + dealStep(k)) >> 24)];
 }
 
-PointMask RayBlock::above(uint32_t k, const Vec3f& direction) {
+PointMask RayBlock::above(const DirectionLevel& level, uint32_t k) {
+    const Vec3f& direction = level.turned[orientation_].directions[k];
     PointMask mask;
     if (!(coneAxis_.dot(direction) > -coneSine_ - 1e-4f)) return mask;
     for (const uint32_t i : sharedList_) {
-        const Vec3f& normal = items_.points[firstPoint_[i] + subPoint(i, k)].normal;
+        const Vec3f& normal = normal_[offsetStart_[i] + subPoint(i, k)];
         normalX_[i] = normal.x();
         normalY_[i] = normal.y();
         normalZ_[i] = normal.z();
@@ -98,12 +100,15 @@ PointMask RayBlock::above(uint32_t k, const Vec3f& direction) {
     return mask;
 }
 
-float RayBlock::cosineOf(size_t i, uint32_t k, const Vec3f& direction) const {
-    const Vec3f& n = items_.points[firstPoint_[i] + subPoint(i, k)].normal;
+float RayBlock::cosineOf(const DirectionLevel& level, size_t i, uint32_t k) const {
+    const Vec3f &n = normal_[offsetStart_[i] + subPoint(i, k)],
+                &direction = level.turned[orientation_].directions[k];
     return n.x() * direction.x() + n.y() * direction.y() + n.z() * direction.z();
 }
 
-PointMask RayBlock::visible(uint32_t k, const Vec3f& direction, const PointMask& rays, RayCasting casting) {
+PointMask RayBlock::visible(const DirectionLevel& level, uint32_t k, const PointMask& rays,
+                            RayCasting casting) {
+    const Vec3f& direction = level.turned[orientation_].directions[k];
     std::array<size_t, std::tuple_size_v<decltype(rays.words)> + 1> first{};  // ray of each word
     size_t count = 0;
     for (size_t w = 0; w < rays.words.size(); ++w) {
@@ -133,11 +138,11 @@ PointMask RayBlock::visible(uint32_t k, const Vec3f& direction, const PointMask&
     return result;
 }
 
-void RayBlock::enqueue(uint32_t k, const Vec3f& direction, const PointMask& rays,
+void RayBlock::enqueue(const DirectionLevel& level, uint32_t k, const PointMask& rays,
                        std::vector<PointMask>& visible) {
     rays.forEach([&](size_t i) {
         queueOrigins_.push_back(offset_[offsetStart_[i] + subPoint(i, k)]);
-        queueDirections_.push_back(direction);
+        queueDirections_.push_back(level.turned[orientation_].directions[k]);
         queuePlaces_.emplace_back(k, uint32_t(i));
     });
     if (queueOrigins_.size() >= kQueue) flush(visible);

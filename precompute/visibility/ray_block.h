@@ -9,6 +9,7 @@
 
 #include "precompute/rays/ray_caster.h"
 #include "precompute/visibility/bake_items.h"
+#include "precompute/visibility/direction_levels.h"
 #include "precompute/visibility/point_mask.h"
 
 namespace prt {
@@ -21,25 +22,26 @@ class RayBlock {
   public:
     RayBlock(const RayCaster& caster, const BakeItems& items) : caster_(caster), items_(items) {}
 
-    /// @param block  the items, at most kMostBlockPoints, near each other; kept by reference
+    /// @param block  the items, at most kMostBlockPoints, near each other, all of one orientation; kept by
+    ///               reference
     void begin(std::span<const uint32_t> block);
     size_t size() const { return block_.size(); }
     uint32_t item(size_t i) const { return block_[i]; }
     /// The items with more than one sub-point.
     const PointMask& shared() const { return shared_; }
 
-    /// Items with a direction above the horizon of the sub-point that takes it.
-    /// @param k  index of the direction in its set, by which it is dealt
-    PointMask above(uint32_t k, const Vec3f& direction);
+    /// Items with direction k above the horizon of the sub-point that takes it.
+    PointMask above(const DirectionLevel& level, uint32_t k);
     /// The cosine of any direction at the sub-point that takes it.
-    float cosineOf(size_t i, uint32_t k, const Vec3f& direction) const;
+    float cosineOf(const DirectionLevel& level, size_t i, uint32_t k) const;
 
     /// Those of `rays`, all above their horizon, that see past the scene in a direction.
-    PointMask visible(uint32_t k, const Vec3f& direction, const PointMask& rays, RayCasting casting);
+    PointMask visible(const DirectionLevel& level, uint32_t k, const PointMask& rays, RayCasting casting);
     /// The same of several directions, gathered so that streams of rays are full: their answers are added to
     /// `visible` (zero there) by the next flush() at the latest. Directions that follow each other should be
     /// near each other.
-    void enqueue(uint32_t k, const Vec3f& direction, const PointMask& rays, std::vector<PointMask>& visible);
+    void enqueue(const DirectionLevel& level, uint32_t k, const PointMask& rays,
+                 std::vector<PointMask>& visible);
     void flush(std::vector<PointMask>& visible);
     uint64_t rays() const { return rays_; }  ///< traced since the beginning
 
@@ -50,11 +52,13 @@ class RayBlock {
     const RayCaster& caster_;
     const BakeItems& items_;
     std::span<const uint32_t> block_;
+    size_t orientation_ = 0;
     PointMask shared_;
     std::vector<uint32_t> sharedList_;
     std::vector<uint8_t> slots_;  // [kMostBlockPoints × 256] sub-point by the upper bits of the deal
     std::vector<Vec3f> offset_;   // ray origins of all sub-points of the block
-    std::array<uint32_t, kMostBlockPoints> firstPoint_{}, offsetStart_{}, hash_{};
+    std::vector<Vec3f> normal_;   // their normals
+    std::array<uint32_t, kMostBlockPoints> offsetStart_{}, hash_{};
     std::array<float, kMostBlockPoints> normalX_{}, normalY_{}, normalZ_{}, cosines_{};
     std::array<Vec3f, kMostBlockPoints> origins_;
     std::array<uint8_t, kMostBlockPoints> blocked_{};

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <memory>
 #include <mutex>
 
@@ -63,11 +64,14 @@ class Batch {
     /// @param items  near each other, in order
     void run(std::span<const uint32_t> items) {
         std::vector<Block> blocks;
-        for (size_t begin = 0; begin < items.size(); begin += blockPoints())
-            blocks.push_back({{items.begin() + ptrdiff_t(begin),
-                               items.begin() + ptrdiff_t(std::min(begin + blockPoints(), items.size()))},
-                              {},
-                              {}});
+        for (int orientation = 0; orientation < kOrientations; ++orientation)
+            for (const uint32_t item : items) {
+                if (bake_.items.orientation(item) != orientation) continue;
+                if (blocks.empty() || blocks.back().orientation != orientation ||
+                    blocks.back().items.size() == blockPoints())
+                    blocks.push_back({orientation, {}, {}, {}});
+                blocks.back().items.push_back(item);
+            }
         for (size_t level = 0; level < bake_.levels.count() && !blocks.empty(); ++level) {
             const bool last = level + 1 == bake_.levels.count();
             for (Block& block : blocks) {
@@ -82,6 +86,7 @@ class Batch {
 
   private:
     struct Block {
+        int orientation = 0;
         std::vector<uint32_t> items;
         LevelMasks answers;  // of the set before; empty at the first
         PointMask staying;   // items that go on to the next set
@@ -102,17 +107,18 @@ class Batch {
         stages_.trace += clock_.lap();
         normals_.clear();
         for (const uint32_t item : block.items) normals_.push_back(bake_.items.normal(item));
-        projection_.project(level, block.answers, normals_);
+        projection_.project(level, block.orientation, block.answers, normals_);
         block.staying = {};
         for (size_t i = 0; i < block.items.size(); ++i) {
-            finish(block.items[i], i, levelIndex, cosines);
+            finish(block, i, levelIndex, cosines);
             if (!last && double(result_.error[block.items[i]]) > bake_.options.error) block.staying.set(i);
         }
         stages_.project += clock_.lap();
     }
 
     // Writes what this set says of item i of the block.
-    void finish(uint32_t item, size_t i, size_t levelIndex, const SharedCosines& cosines) {
+    void finish(const Block& block, size_t i, size_t levelIndex, const SharedCosines& cosines) {
+        const uint32_t item = block.items[i];
         const std::span stored(&result_.coefficients[size_t(item) * bake_.columns], bake_.columns);
         projection_.expansion(i, expansion_);
         double error = kHalfSetShare * projection_.halfSetDifference(i);
@@ -134,11 +140,14 @@ class Batch {
         size_t first = 0;
         while (first < blocks.size()) {
             Block together;
+            together.orientation = blocks[first].orientation;
             MaskGather gather;
             size_t next = first;
             for (; next < blocks.size(); ++next) {
                 const Block& block = blocks[next];
-                if (together.items.size() + block.staying.count() > blockPoints()) break;
+                if (block.orientation != together.orientation ||
+                    together.items.size() + block.staying.count() > blockPoints())
+                    break;
                 gather.add(block.answers, block.staying);
                 block.staying.forEach([&](size_t i) { together.items.push_back(block.items[i]); });
             }
@@ -176,6 +185,7 @@ void checkOptions(const RayCaster& caster, const BakeItems& items, const BakeOpt
     PRT_CHECK_LE(size_t(options.blockPoints), kMostBlockPoints);
     PRT_CHECK(items.normals.empty() || items.normals.size() == items.count());
     PRT_CHECK(items.firstPoint.empty() || !items.normals.empty());
+    PRT_CHECK(items.orientations.empty() || items.orientations.size() == items.count());
     PRT_CHECK(options.doubleSided.empty() || options.doubleSided.size() == caster.triangleCount());
 }
 
@@ -198,7 +208,9 @@ RayCasting chooseCasting(const RayCaster& caster, const BakeItems& items, std::s
     if (distances.empty()) return RayCasting::Stream;
     const auto median = distances.begin() + ptrdiff_t(distances.size() / 2);
     std::nth_element(distances.begin(), median, distances.end());
-    return caster.packetsAreFaster(*median) ? RayCasting::Packets : RayCasting::Stream;
+    // Points of one orientation are farther from each other.
+    const float spacing = items.orientations.empty() ? *median : *median * std::sqrt(float(kOrientations));
+    return caster.packetsAreFaster(spacing) ? RayCasting::Packets : RayCasting::Stream;
 }
 
 void markInside(const RayCaster& caster, const BakeItems& items, const BakeOptions& options,

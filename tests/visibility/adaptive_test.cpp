@@ -16,6 +16,8 @@
 #include "precompute/visibility/block_projection.h"
 #include "precompute/visibility/direction_levels.h"
 #include "precompute/visibility/level_masks.h"
+#include "precompute/visibility/orientations.h"
+#include "precompute/visibility/trace_blocks.h"
 #include "tests/rays/shapes.h"
 
 namespace prt {
@@ -356,6 +358,54 @@ TEST(AdaptiveBake, ErrorsAreWhatWasAskedForAndKnown) {
             EXPECT_LT(double(adaptive.rays), 0.65 * double(uniform.rays));
         }
     }
+}
+
+// Every orientation is the same bake in a scene turned the other way, with another sample of directions.
+TEST(Orientations, AreRotationsAndBakeTheSame) {
+    const shapes::Mesh mesh = clutter(false);
+    const RayCaster caster(mesh.positions, mesh.indices);
+    const std::vector<SurfacePoint> points = floorPoints(12);
+    BakeOptions options;
+    options.shOrder = 5;
+    options.rays = 3000;
+    std::vector<BakeResult> bakes;
+    for (size_t o = 0; o < kOrientations; ++o) {
+        const Mat3d& rotation = setOrientations()[o];
+        EXPECT_LT((rotation * rotation.transpose() - Mat3d::Identity()).norm(), 1e-12);
+        EXPECT_NEAR(rotation.determinant(), 1, 1e-12);
+        const std::vector<uint8_t> orientations(points.size(), uint8_t(o));
+        BakeItems items;
+        items.points = points;
+        items.orientations = orientations;
+        bakes.push_back(bakeItems(caster, items, options, "points"));
+    }
+    EXPECT_EQ(bakes[0].coefficients, bakeVisibility(caster, points, options).coefficients);
+    const IrradianceNorm norm(5);
+    for (size_t o = 1; o < kOrientations; ++o) {
+        double sum = 0, estimated = 0;
+        for (size_t i = 0; i < points.size(); ++i) {
+            std::vector<float> difference(25);
+            for (size_t c = 0; c < 25; ++c)
+                difference[c] = bakes[o].coefficients[25 * i + c] - bakes[0].coefficients[25 * i + c];
+            sum += std::pow(norm.evaluate(points[i].normal, difference), 2);
+            estimated += std::pow(double(bakes[o].error[i]), 2) + std::pow(double(bakes[0].error[i]), 2);
+        }
+        EXPECT_GT(sum, 0.2 * estimated) << o;
+        EXPECT_LT(sum, 3 * estimated) << o;
+    }
+}
+
+TEST(Orientations, AreDealtEvenly) {
+    for (uint32_t y = 0; y < 4; ++y)
+        for (uint32_t x = 0; x < 4; ++x) {
+            int seen = 0;
+            for (const auto& [dx, dy] : {std::pair{0u, 0u}, {1u, 0u}, {0u, 1u}, {1u, 1u}})
+                seen |= 1 << texelOrientation(x + dx, y + dy);
+            EXPECT_EQ(seen, 15);
+        }
+    std::array<int, 4> counts{};
+    for (uint32_t v = 0; v < 400; ++v) ++counts[vertexOrientation(v)];
+    for (const int count : counts) EXPECT_NEAR(count, 100, 3);
 }
 
 TEST(AdaptiveBake, OpenPointsNeedTheFirstSetOnly) {

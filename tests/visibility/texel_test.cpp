@@ -7,6 +7,8 @@
 #include "precompute/mesh/atlas.h"
 #include "precompute/mesh/texel_raster.h"
 #include "precompute/visibility/bake.h"
+#include "precompute/visibility/orientations.h"
+#include "precompute/visibility/trace_blocks.h"
 #include "tests/rays/shapes.h"
 
 namespace prt {
@@ -179,7 +181,16 @@ TEST(TexelBake, WholeTexelsAreTheirPointToTheBit) {
     BakeOptions options;
     options.shOrder = 3;
     options.rays = 256;
-    const BakeResult points = bakeVisibility(caster, surface.points, options);
+    // As points, but with the orientations of their texels.
+    std::vector<uint8_t> orientations(surface.points.size());
+    for (uint32_t y = 0; y < uint32_t(kAtlas); ++y)
+        for (uint32_t x = 0; x < uint32_t(kAtlas); ++x)
+            if (const uint32_t point = surface.pointOfTexel[y * uint32_t(kAtlas) + x]; point != kNoPoint)
+                orientations[point] = texelOrientation(x, y);
+    BakeItems items;
+    items.points = surface.points;
+    items.orientations = orientations;
+    const BakeResult points = bakeItems(caster, items, options, "points");
     const BakeResult parts = bakeTexelVisibility(caster, surface, options);
     ASSERT_EQ(parts.coefficients.size(), points.coefficients.size());
     size_t same = 0, clear = 0, other = 0;
