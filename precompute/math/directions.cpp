@@ -8,24 +8,9 @@
 #include <numbers>
 
 #include "precompute/base/check.h"
+#include "precompute/math/split_mix.h"
 
 namespace prt {
-namespace {
-
-struct SplitMix64 {
-    uint64_t state;
-    uint64_t next() {
-        uint64_t v = state += 0x9e3779b97f4a7c15u;
-        v = (v ^ (v >> 30)) * 0xbf58476d1ce4e5b9u;
-        v = (v ^ (v >> 27)) * 0x94d049bb133111ebu;
-        return v ^ (v >> 31);
-    }
-    /// In [0, 1).
-    double uniform() { return double(next() >> 11) * 0x1p-53; }
-};
-
-}  // namespace
-
 std::vector<Vec3f> sphericalFibonacci(int count) {
     PRT_CHECK_LE(1, count);
     std::vector<Vec3f> directions(static_cast<size_t>(count));
