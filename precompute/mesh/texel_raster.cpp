@@ -15,6 +15,7 @@
 #include "precompute/base/error.h"
 #include "precompute/base/parallel.h"
 #include "precompute/mesh/index_table.h"
+#include "precompute/mesh/interrupt.h"
 #include "precompute/mesh/topology.h"
 
 namespace prt {
@@ -232,8 +233,10 @@ void Rasterizer::binTriangles() {
     std::partial_sum(bandFirst.begin(), bandFirst.end(), bandFirst.begin());
     bandTriangles.resize(bandFirst.back());
     std::vector<uint32_t> cursor(bandFirst.begin(), bandFirst.end() - 1);
-    for (size_t i = 0; i < triangles; ++i)
+    for (size_t i = 0; i < triangles; ++i) {
+        throwIfInterruptedAt(i);
         for (int b = range[i][0]; b <= range[i][1]; ++b) bandTriangles[cursor[size_t(b)]++] = uint32_t(i);
+    }
 }
 
 void Rasterizer::rasterizeBand(int band) {
@@ -372,11 +375,14 @@ std::vector<uint32_t> findCharts(const Scene& scene) {
     const auto& uv = scene.uv1;
     std::vector<uint32_t> same(uv.size());
     IndexTable table(uv.size());
-    for (uint32_t v = 0; v < uv.size(); ++v)
+    for (uint32_t v = 0; v < uv.size(); ++v) {
+        throwIfInterruptedAt(v);
         same[v] = table.findOrInsert(mixHash(floatKey(uv[v].x()), floatKey(uv[v].y())), v,
                                      [&](uint32_t other) { return uv[other] == uv[v]; });
+    }
     DisjointSets sets(uv.size());
     for (size_t i = 0; i < scene.indices.size(); i += 3) {
+        throwIfInterruptedAt(i / 3);
         sets.unite(same[scene.indices[i]], same[scene.indices[i + 1]]);
         sets.unite(same[scene.indices[i]], same[scene.indices[i + 2]]);
     }
@@ -402,6 +408,7 @@ void joinParts(std::vector<BandParts>& bands, TexelSurface& surface) {
     surface.whole.reserve(surface.points.size());
     uint32_t first = 0;
     for (BandParts& band : bands) {
+        throwIfInterrupted();
         for (const uint32_t count : band.counts) {
             surface.firstPart.push_back(first);
             first += count;
@@ -436,6 +443,7 @@ TexelSurface rasterizeTexels(const Scene& scene, int width, int height) {
     surface.chartOfTexel.assign(texels, kNoPoint);
     uint32_t count = 0;
     for (size_t i = 0; i < texels; ++i) {
+        throwIfInterruptedAt(i);
         if (raster.bestTriangle[i] == kNone) continue;
         surface.pointOfTexel[i] = count++;
         surface.chartOfTexel[i] = raster.chartOfTriangle[raster.bestTriangle[i]];
