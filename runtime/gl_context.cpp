@@ -26,6 +26,10 @@
 extern "C" {
 const char* __lsan_default_suppressions();
 const char* __lsan_default_suppressions() { return "leak:libOSMesa\n"; }
+// The checker guesses where libraries that were opened at run time keep their thread-local storage, and reads
+// wild addresses where glibc's bookkeeping is not what it expects.
+const char* __asan_default_options();
+const char* __asan_default_options() { return "intercept_tls_get_addr=0"; }
 const char* __lsan_default_options();
 const char* __lsan_default_options() { return "print_suppressions=0"; }  // stderr is for our own lines
 }

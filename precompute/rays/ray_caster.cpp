@@ -9,6 +9,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <memory>
 
 #include "precompute/base/check.h"
 #include "precompute/base/error.h"
@@ -39,6 +40,13 @@ RTCRay makeRay(const Vec3f& origin, const Vec3f& direction) {
     ray.mask = ~0u;
     setRay(ray, origin, direction);
     return ray;
+}
+
+// On the heap, so that every thread of the process does not carry it.
+template <class Value>
+Value& keptByThread() {
+    thread_local const std::unique_ptr<Value> kept = std::make_unique<Value>();
+    return *kept;
 }
 
 // Kept by each thread, so that most of a ray is written once.
@@ -129,7 +137,7 @@ RayCaster& RayCaster::operator=(RayCaster&&) noexcept = default;
 void RayCaster::occluded(std::span<const Vec3f> origins, const Vec3f& direction,
                          std::span<uint8_t> occluded) const {
     PRT_CHECK_LE(origins.size(), occluded.size());
-    thread_local Stream stream;
+    Stream& stream = keptByThread<Stream>();
     const State& s = *state_;
     for (size_t begin = 0; begin < origins.size(); begin += kRayStream) {
         const size_t count = std::min(kRayStream, origins.size() - begin);
@@ -141,7 +149,7 @@ void RayCaster::occluded(std::span<const Vec3f> origins, const Vec3f& direction,
 void RayCaster::occluded(const Vec3f& origin, std::span<const Vec3f> directions,
                          std::span<uint8_t> occluded) const {
     PRT_CHECK_LE(directions.size(), occluded.size());
-    thread_local Stream stream;
+    Stream& stream = keptByThread<Stream>();
     const State& s = *state_;
     const Vec3f start = origin * s.scale;
     for (size_t begin = 0; begin < directions.size(); begin += kRayStream) {
@@ -155,7 +163,7 @@ void RayCaster::occludedRays(std::span<const Vec3f> origins, std::span<const Vec
                              std::span<uint8_t> occluded) const {
     PRT_CHECK_EQ(origins.size(), directions.size());
     PRT_CHECK_LE(origins.size(), occluded.size());
-    thread_local Stream stream;
+    Stream& stream = keptByThread<Stream>();
     const State& s = *state_;
     for (size_t begin = 0; begin < origins.size(); begin += kRayStream) {
         const size_t count = std::min(kRayStream, origins.size() - begin);
@@ -168,7 +176,7 @@ void RayCaster::occludedRays(std::span<const Vec3f> origins, std::span<const Vec
 void RayCaster::occludedPackets(std::span<const Vec3f> origins, const Vec3f& direction,
                                 std::span<uint8_t> occluded) const {
     PRT_CHECK_LE(origins.size(), occluded.size());
-    thread_local Packet packet;
+    Packet& packet = keptByThread<Packet>();
     const State& s = *state_;
     RTCIntersectContext context = makeContext(RTC_INTERSECT_CONTEXT_FLAG_COHERENT);
     packet.setDirection(direction);
