@@ -56,7 +56,8 @@ void RayBlock::begin(std::span<const uint32_t> block) {
             normalZ_[i] = normal_.back().z();
         }
         PRT_CHECK_EQ(size_t(items_.orientation(block[i])), orientation_);
-        if (last <= first + 1) continue;
+        // One sub-point with a normal of its own keeps its own horizon, as several do.
+        if (last == first || (last == first + 1 && normal_.back() == items_.normal(block[i]))) continue;
         shared_.set(i);
         sharedList_.push_back(uint32_t(i));
         hash_[i] = dealOfDirection(block[i], 0);

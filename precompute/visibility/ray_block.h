@@ -27,7 +27,7 @@ class RayBlock {
     void begin(std::span<const uint32_t> block);
     size_t size() const { return block_.size(); }
     uint32_t item(size_t i) const { return block_[i]; }
-    /// The items with more than one sub-point.
+    /// The items with more than one sub-point, or one of another normal than theirs.
     const PointMask& shared() const { return shared_; }
 
     /// Items with direction k above the horizon of the sub-point that takes it.
