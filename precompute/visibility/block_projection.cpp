@@ -3,7 +3,6 @@
 #include "precompute/visibility/block_projection.h"
 
 #include <algorithm>
-#include <bit>
 #include <numbers>
 
 #include "precompute/base/check.h"

@@ -14,7 +14,6 @@ Mat3d poleTo(const Vec3d& pole) {
     Mat3d rotation;
     rotation.col(0) = frame.tangent.cast<double>();
     rotation.col(1) = frame.normal.cast<double>();
-    rotation.col(2) = rotation.col(0).cross(rotation.col(1));
     // Exact where the frame is good to float alone.
     rotation.col(1).normalize();
     rotation.col(0) = (rotation.col(0) - rotation.col(0).dot(rotation.col(1)) * rotation.col(1)).normalized();

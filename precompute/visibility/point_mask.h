@@ -15,12 +15,6 @@ inline constexpr size_t kMostBlockPoints = 256;
 struct PointMask {
     std::array<uint64_t, kMostBlockPoints / 64> words{};
 
-    /// The first `count` points.
-    static PointMask first(size_t count) {
-        PointMask mask;
-        for (size_t i = 0; i < count; ++i) mask.set(i);
-        return mask;
-    }
     void set(size_t i) { words[i / 64] |= uint64_t(1) << i % 64; }
     bool test(size_t i) const { return words[i / 64] >> i % 64 & 1; }
     bool any() const { return (words[0] | words[1] | words[2] | words[3]) != 0; }

@@ -25,8 +25,6 @@ class RayBlock {
     /// @param block  the items, at most kMostBlockPoints, near each other, all of one orientation; kept by
     ///               reference
     void begin(std::span<const uint32_t> block);
-    size_t size() const { return block_.size(); }
-    uint32_t item(size_t i) const { return block_[i]; }
     /// The items with more than one sub-point, or one of another normal than theirs.
     const PointMask& shared() const { return shared_; }
 
