@@ -11,6 +11,7 @@
 #include "precompute/base/check.h"
 #include "precompute/math/sh_legendre.h"
 #include "precompute/math/sh_rotation.h"
+#include "precompute/math/sh_rotation_soa.h"
 #include "precompute/math/zonal_map.h"
 
 namespace prt {
@@ -101,6 +102,23 @@ double IrradianceNorm::evaluate(const Vec3f& normal, std::span<const float> coef
     double sum = 0;
     for (size_t i = 0; i < count; ++i) sum += double(root[i]) * double(root[i]);
     return std::sqrt(sum);
+}
+
+void IrradianceNorm::evaluateSoa(std::span<const Vec3f> normals, size_t stride,
+                                 std::span<const float> coefficients, std::span<float> out) const {
+    const size_t count = normals.size(), columns = size_t(shCount(state_->shOrder));
+    PRT_CHECK_LE(paddedSoaCount(count), stride);
+    PRT_CHECK_LE(columns * stride, coefficients.size());
+    PRT_CHECK_EQ(out.size(), count);
+    const LocalRotations rotations(normals, stride);
+    std::vector<float> local(columns * stride), roots(columns * stride);
+    rotateShSoa(rotations.fromWorld, state_->shOrder, count, stride, coefficients, local);
+    state_->roots.applySoa(paddedSoaCount(count), stride, local.data(), roots.data());
+    std::vector<double> sums(count, 0.0);
+    for (size_t c = 0; c < columns; ++c)
+        for (size_t k = 0; k < count; ++k)
+            sums[k] += double(roots[c * stride + k]) * double(roots[c * stride + k]);
+    for (size_t k = 0; k < count; ++k) out[k] = float(std::sqrt(sums[k]));
 }
 
 }  // namespace prt

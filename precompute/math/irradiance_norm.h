@@ -31,6 +31,14 @@ class IrradianceNorm {
     /// @return ‖coefficients‖ >= 0; 1 for an open point up to its truncation
     double evaluate(const Vec3f& normal, std::span<const float> coefficients) const;
 
+    /// The same of many, in one go: coefficient i of vector k lies at [i·stride + k].
+    /// @param normals       [N] unit
+    /// @param stride        >= N rounded up to a multiple of 16
+    /// @param coefficients  [n²×stride]
+    /// @param out           [N]
+    void evaluateSoa(std::span<const Vec3f> normals, size_t stride, std::span<const float> coefficients,
+                     std::span<float> out) const;
+
   private:
     struct State;
     std::unique_ptr<State> state_;

@@ -14,6 +14,7 @@
 #include "precompute/math/sh.h"
 #include "precompute/math/sh_legendre.h"
 #include "precompute/math/sh_rotation.h"
+#include "precompute/math/sh_rotation_soa.h"
 #include "precompute/math/zonal_map.h"
 
 namespace prt {
@@ -115,6 +116,36 @@ void IrradianceProjection::solve(const Vec3f& normal, std::span<const float> b, 
         state_->inverse.apply(in, result);
         state_->addIrradiance(double(irradiance), result);
     });
+}
+
+void IrradianceProjection::solveSoa(std::span<const Vec3f> normals, size_t stride, std::span<const float> b,
+                                    std::span<const float> irradiance, std::span<float> out) const {
+    const size_t count = normals.size(), columns = size_t(shCount(state_->shOrder));
+    PRT_CHECK_LE(paddedSoaCount(count), stride);
+    PRT_CHECK_LE(columns * stride, b.size());
+    PRT_CHECK_LE(columns * stride, out.size());
+    PRT_CHECK_EQ(irradiance.size(), count);
+    if (!state_->useFloat) {
+        std::array<float, kMostCoefficients> one;
+        for (size_t k = 0; k < count; ++k) {
+            for (size_t c = 0; c < columns; ++c) one[c] = b[c * stride + k];
+            const std::span single(one.data(), columns);
+            solve(normals[k], single, irradiance[k], single);
+            for (size_t c = 0; c < columns; ++c) out[c * stride + k] = one[c];
+        }
+        return;
+    }
+    for (const Vec3f& normal : normals) PRT_CHECK(isUnit(normal));
+    const size_t padded = paddedSoaCount(count);
+    const LocalRotations rotations(normals, stride);
+    std::vector<float> local(columns * stride), solved(columns * stride);
+    rotateShSoa(rotations.fromWorld, state_->shOrder, count, stride, b, local);
+    state_->inverse.applySoa(padded, stride, local.data(), solved.data());
+    for (int l = 0; l < state_->shOrder; ++l)
+        for (size_t k = 0; k < count; ++k)
+            solved[size_t(shIndex(l, 0)) * stride + k] +=
+                float(state_->perIrradiance[size_t(l)] * double(irradiance[k]));
+    rotateShSoa(rotations.toWorld, state_->shOrder, count, stride, solved, out);
 }
 
 void IrradianceProjection::solveLocal(std::span<const double> b, double irradiance,

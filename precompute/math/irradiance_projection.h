@@ -28,6 +28,16 @@ class IrradianceProjection {
     /// @param out         [n²] c, world; may be b
     void solve(const Vec3f& normal, std::span<const float> b, float irradiance, std::span<float> out) const;
 
+    /// The same of many, in one go: coefficient i of vector k lies at [i·stride + k]. Equal to solve() to
+    /// rounding.
+    /// @param normals     [N] unit
+    /// @param stride      >= N rounded up to a multiple of 16
+    /// @param b           [n²×stride]
+    /// @param irradiance  [N]
+    /// @param out         [n²×stride] may be b
+    void solveSoa(std::span<const Vec3f> normals, size_t stride, std::span<const float> b,
+                  std::span<const float> irradiance, std::span<float> out) const;
+
     /// The same where the normal is +Z, in double.
     void solveLocal(std::span<const double> b, double irradiance, std::span<double> out) const;
 

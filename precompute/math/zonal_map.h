@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <span>
 #include <vector>
 
 #include "precompute/math/directions.h"
@@ -39,10 +40,17 @@ class ZonalMap {
         }
     }
 
+    /// The same of many vectors: coefficient i of vector k lies at [i·stride + k].
+    /// @param count  rounded up to a multiple of 16; stride is not less
+    void applySoa(size_t count, size_t stride, const float* in, float* out) const;
+
   private:
     int shOrder_;
     std::vector<double> values_;
 };
+
+/// A vector's length rounded up to what applySoa takes at once.
+constexpr size_t paddedSoaCount(size_t count) { return (count + 15) / 16 * 16; }
 
 /// Rotation into the frame of a unit normal (frameAround), where the normal is +Z.
 inline Mat3d localFromWorld(const Vec3f& normal) {
@@ -53,5 +61,13 @@ inline Mat3d localFromWorld(const Vec3f& normal) {
     rotation.row(2) = frame.normal.cast<double>();
     return rotation;
 }
+
+/// The same of many normals, as rotateShSoa takes them: entry (row, column) of rotation k at
+/// [(3·row + column)·stride + k].
+struct LocalRotations {
+    std::vector<float> fromWorld, toWorld;
+
+    LocalRotations(std::span<const Vec3f> normals, size_t stride);
+};
 
 }  // namespace prt

@@ -86,6 +86,28 @@ TEST(IrradianceNorm, ScalesAndTurnsWithItsArgument) {
     EXPECT_EQ(norm.evaluate(n, e), 0);
 }
 
+TEST(IrradianceNorm, ManyAreEachOfThem) {
+    std::mt19937 random(4);
+    std::normal_distribution<float> normal;
+    for (const int order : {1, 3, 6, 10})
+        for (const size_t count : {1u, 5u, 16u, 37u}) {
+            const IrradianceNorm norm(order);
+            const size_t columns = size_t(shCount(order)), stride = 48;
+            std::vector<Vec3f> normals;
+            std::vector<float> many(columns * stride, 7.0f), out(count);
+            std::vector<std::vector<float>> single(count, std::vector<float>(columns));
+            for (size_t k = 0; k < count; ++k) {
+                normals.push_back(Vec3f(normal(random), normal(random), normal(random)).normalized());
+                for (size_t c = 0; c < columns; ++c) many[c * stride + k] = single[k][c] = normal(random);
+            }
+            norm.evaluateSoa(normals, stride, many, out);
+            for (size_t k = 0; k < count; ++k) {
+                const double expected = norm.evaluate(normals[k], single[k]);
+                EXPECT_NEAR(double(out[k]), expected, 3e-6 * expected);
+            }
+        }
+}
+
 TEST(NaturalLight, FallsWithTheBand) {
     EXPECT_EQ(naturalLightPower(0), 1);
     EXPECT_NEAR(naturalLightPower(1), 0.3, 1e-12);

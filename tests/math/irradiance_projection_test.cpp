@@ -237,5 +237,33 @@ TEST(IrradianceProjectionDeath, SizesThatDoNotFitAndNormalsThatAreNone) {
     EXPECT_DEATH(IrradianceProjection(kMaxBundleShOrder + 1), "shOrder");
 }
 
+TEST(IrradianceProjection, ManyAreEachOfThem) {
+    std::mt19937 random(6);
+    std::normal_distribution<float> gauss;
+    for (const int order : {1, 4, 6, 10})
+        for (const double floor : {1e-4, 1e-3, 1e-6})  // the last in double
+            for (const size_t count : {1u, 16u, 23u}) {
+                const IrradianceProjection projection(order, {40, floor});
+                const size_t columns = size_t(shCount(order)), stride = 32;
+                std::vector<Vec3f> normals;
+                std::vector<float> many(columns * stride, 5.0f), irradiance;
+                std::vector<std::vector<float>> single(count, std::vector<float>(columns));
+                for (size_t k = 0; k < count; ++k) {
+                    normals.push_back(Vec3f(gauss(random), gauss(random), gauss(random)).normalized());
+                    irradiance.push_back(std::abs(gauss(random)));
+                    for (size_t c = 0; c < columns; ++c) many[c * stride + k] = single[k][c] = gauss(random);
+                }
+                projection.solveSoa(normals, stride, many, irradiance, many);
+                for (size_t k = 0; k < count; ++k) {
+                    std::vector<float> expected(columns);
+                    projection.solve(normals[k], single[k], irradiance[k], expected);
+                    float largest = 0;
+                    for (const float value : expected) largest = std::max(largest, std::abs(value));
+                    for (size_t c = 0; c < columns; ++c)
+                        EXPECT_NEAR(many[c * stride + k], expected[c], 2e-5f * largest) << order;
+                }
+            }
+}
+
 }  // namespace
 }  // namespace prt
