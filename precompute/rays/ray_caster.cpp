@@ -8,8 +8,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 #include <memory>
+#include <utility>
 
 #include "precompute/base/check.h"
 #include "precompute/base/error.h"
@@ -22,6 +24,19 @@ namespace {
 constexpr float kLargestCoordinate = 1e18f;
 
 constexpr float kFar = std::numeric_limits<float>::infinity();
+
+RayHit hitOf(const RTCRayHit& query, float scale) {
+    RayHit hit;
+    if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return hit;
+    hit.triangle = query.hit.primID;
+    hit.distance = query.ray.tfar / scale;
+    hit.u = query.hit.u;
+    hit.v = query.hit.v;
+    hit.backFace = query.hit.Ng_x * query.ray.dir_x + query.hit.Ng_y * query.ray.dir_y +
+                       query.hit.Ng_z * query.ray.dir_z >
+                   0;
+    return hit;
+}
 
 // What changes from one query to the next; Embree itself writes nothing but tfar.
 void setRay(RTCRay& ray, const Vec3f& origin, const Vec3f& direction) {
@@ -49,17 +64,21 @@ Value& keptByThread() {
     return *kept;
 }
 
-// Kept by each thread, so that most of a ray is written once.
-struct Stream {
-    std::array<RTCRay, kRayStream> rays;
-    Stream() { rays.fill(makeRay(Vec3f::Zero(), Vec3f::Zero())); }
-
-    // The first `count` rays.
-    void trace(RTCScene scene, size_t count, uint8_t* occluded) {
-        RTCIntersectContext context = makeContext(RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT);
-        rtcOccluded1M(scene, &context, rays.data(), unsigned(count), sizeof(RTCRay));
-        for (size_t i = 0; i < count; ++i) occluded[i] = rays[i].tfar < 0;
+// Rays 0 … count − 1; endsOf(i) are the origin and the direction of one.
+template <class EndsOf>
+void castAll(const RayCaster& caster, size_t count, std::span<uint8_t> occluded, const EndsOf& endsOf) {
+    RayStream stream(caster);
+    for (size_t begin = 0; begin < count; begin += RayStream::kCapacity) {
+        const size_t end = std::min(count, begin + RayStream::kCapacity);
+        stream.clear();
+        for (size_t i = begin; i < end; ++i) stream.add(endsOf(i).first, endsOf(i).second);
+        stream.cast();
+        for (size_t i = begin; i < end; ++i) occluded[i] = stream.blocked(i - begin);
     }
+}
+
+struct HitStream {
+    std::array<RTCRayHit, kRayStream> queries{};
 };
 
 struct Packet {
@@ -67,17 +86,15 @@ struct Packet {
     alignas(64) std::array<int, kRayPacket> valid{};
     Packet() { std::fill(std::begin(rays.mask), std::end(rays.mask), ~0u); }
 
-    void setDirection(const Vec3f& direction) {
-        std::fill(std::begin(rays.dir_x), std::end(rays.dir_x), direction.x());
-        std::fill(std::begin(rays.dir_y), std::end(rays.dir_y), direction.y());
-        std::fill(std::begin(rays.dir_z), std::end(rays.dir_z), direction.z());
-    }
-    void setOrigins(std::span<const Vec3f> origins, float scale) {
+    void set(std::span<const Vec3f> origins, std::span<const Vec3f> directions, float scale) {
         for (size_t i = 0; i < kRayPacket; ++i) valid[i] = i < origins.size() ? -1 : 0;
         for (size_t i = 0; i < origins.size(); ++i) {
             rays.org_x[i] = origins[i].x() * scale;
             rays.org_y[i] = origins[i].y() * scale;
             rays.org_z[i] = origins[i].z() * scale;
+            rays.dir_x[i] = directions[i].x();
+            rays.dir_y[i] = directions[i].y();
+            rays.dir_z[i] = directions[i].z();
             rays.tfar[i] = kFar;
         }
     }
@@ -137,52 +154,41 @@ RayCaster& RayCaster::operator=(RayCaster&&) noexcept = default;
 void RayCaster::occluded(std::span<const Vec3f> origins, const Vec3f& direction,
                          std::span<uint8_t> occluded) const {
     PRT_CHECK_LE(origins.size(), occluded.size());
-    Stream& stream = keptByThread<Stream>();
-    const State& s = *state_;
-    for (size_t begin = 0; begin < origins.size(); begin += kRayStream) {
-        const size_t count = std::min(kRayStream, origins.size() - begin);
-        for (size_t i = 0; i < count; ++i) setRay(stream.rays[i], origins[begin + i] * s.scale, direction);
-        stream.trace(s.embree.scene(), count, &occluded[begin]);
-    }
+    castAll(*this, origins.size(), occluded,
+            [&](size_t i) { return std::pair<const Vec3f&, const Vec3f&>(origins[i], direction); });
 }
 
 void RayCaster::occluded(const Vec3f& origin, std::span<const Vec3f> directions,
                          std::span<uint8_t> occluded) const {
     PRT_CHECK_LE(directions.size(), occluded.size());
-    Stream& stream = keptByThread<Stream>();
-    const State& s = *state_;
-    const Vec3f start = origin * s.scale;
-    for (size_t begin = 0; begin < directions.size(); begin += kRayStream) {
-        const size_t count = std::min(kRayStream, directions.size() - begin);
-        for (size_t i = 0; i < count; ++i) setRay(stream.rays[i], start, directions[begin + i]);
-        stream.trace(s.embree.scene(), count, &occluded[begin]);
-    }
+    castAll(*this, directions.size(), occluded,
+            [&](size_t i) { return std::pair<const Vec3f&, const Vec3f&>(origin, directions[i]); });
 }
 
-void RayCaster::occludedRays(std::span<const Vec3f> origins, std::span<const Vec3f> directions,
-                             std::span<uint8_t> occluded) const {
-    PRT_CHECK_EQ(origins.size(), directions.size());
-    PRT_CHECK_LE(origins.size(), occluded.size());
-    Stream& stream = keptByThread<Stream>();
-    const State& s = *state_;
-    for (size_t begin = 0; begin < origins.size(); begin += kRayStream) {
-        const size_t count = std::min(kRayStream, origins.size() - begin);
-        for (size_t i = 0; i < count; ++i)
-            setRay(stream.rays[i], origins[begin + i] * s.scale, directions[begin + i]);
-        stream.trace(s.embree.scene(), count, &occluded[begin]);
-    }
+RayStream::RayStream(const RayCaster& caster) : caster_(caster), scale_(caster.state_->scale) {
+    static_assert(sizeof(Ray) == sizeof(RTCRay) && alignof(Ray) == alignof(RTCRay));
+    static_assert(offsetof(Ray, direction) == offsetof(RTCRay, dir_x));
+    static_assert(offsetof(Ray, far) == offsetof(RTCRay, tfar));
+    static_assert(offsetof(Ray, mask) == offsetof(RTCRay, mask));
+    static_assert(kCapacity == kRayStream);
 }
 
-void RayCaster::occludedPackets(std::span<const Vec3f> origins, const Vec3f& direction,
+void RayStream::cast() {
+    RTCIntersectContext context = makeContext(RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT);
+    rtcOccluded1M(caster_.state_->embree.scene(), &context, reinterpret_cast<RTCRay*>(rays_.data()),
+                  unsigned(size_), sizeof(RTCRay));
+}
+
+void RayCaster::occludedPackets(std::span<const Vec3f> origins, std::span<const Vec3f> directions,
                                 std::span<uint8_t> occluded) const {
+    PRT_CHECK_EQ(origins.size(), directions.size());
     PRT_CHECK_LE(origins.size(), occluded.size());
     Packet& packet = keptByThread<Packet>();
     const State& s = *state_;
     RTCIntersectContext context = makeContext(RTC_INTERSECT_CONTEXT_FLAG_COHERENT);
-    packet.setDirection(direction);
     for (size_t begin = 0; begin < origins.size(); begin += kRayPacket) {
         const size_t count = std::min(kRayPacket, origins.size() - begin);
-        packet.setOrigins(origins.subspan(begin, count), s.scale);
+        packet.set(origins.subspan(begin, count), directions.subspan(begin, count), s.scale);
         rtcOccluded16(packet.valid.data(), s.embree.scene(), &context, &packet.rays);
         for (size_t i = 0; i < count; ++i) occluded[begin + i] = packet.rays.tfar[i] < 0;
     }
@@ -195,22 +201,36 @@ bool RayCaster::packetsAreFaster(float spacing) const {
     return spacing < limit * state_->meanEdge;
 }
 
-RayHit RayCaster::firstHit(const Vec3f& origin, const Vec3f& direction) const {
+RayHit RayCaster::firstHit(const Vec3f& origin, const Vec3f& direction, float farthest) const {
     const State& s = *state_;
     RTCRayHit query;
     query.ray = makeRay(origin * s.scale, direction);
+    query.ray.tfar = farthest * s.scale;
     query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
     RTCIntersectContext context = makeContext(RTC_INTERSECT_CONTEXT_FLAG_NONE);
     rtcIntersect1(s.embree.scene(), &context, &query);
-    RayHit hit;
-    if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return hit;
-    hit.triangle = query.hit.primID;
-    hit.distance = query.ray.tfar / s.scale;
-    hit.u = query.hit.u;
-    hit.v = query.hit.v;
-    hit.backFace = Vec3f(query.hit.Ng_x, query.hit.Ng_y, query.hit.Ng_z).dot(direction) > 0;
-    return hit;
+    return hitOf(query, s.scale);
+}
+
+void RayCaster::firstHits(std::span<const Vec3f> origins, std::span<const Vec3f> directions,
+                          std::span<RayHit> hits) const {
+    PRT_CHECK_EQ(origins.size(), directions.size());
+    PRT_CHECK_LE(origins.size(), hits.size());
+    HitStream& stream = keptByThread<HitStream>();
+    const State& s = *state_;
+    RTCIntersectContext context = makeContext(RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT);
+    for (size_t begin = 0; begin < origins.size(); begin += kRayStream) {
+        const size_t count = std::min(kRayStream, origins.size() - begin);
+        for (size_t i = 0; i < count; ++i) {
+            RTCRayHit& query = stream.queries[i];
+            query.ray = makeRay(origins[begin + i] * s.scale, directions[begin + i]);
+            query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+            query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+        }
+        rtcIntersect1M(s.embree.scene(), &context, stream.queries.data(), unsigned(count), sizeof(RTCRayHit));
+        for (size_t i = 0; i < count; ++i) hits[begin + i] = hitOf(stream.queries[i], s.scale);
+    }
 }
 
 float RayCaster::offsetDistance(const Vec3f& position) const {
@@ -236,6 +256,8 @@ Vec3f RayCaster::snapToPlane(const Vec3f& position, uint32_t triangle) const {
 }
 
 size_t RayCaster::triangleCount() const { return state_->indices.size() / 3; }
+std::span<const Vec3f> RayCaster::positions() const { return state_->positions; }
+std::span<const uint32_t> RayCaster::indices() const { return state_->indices; }
 float RayCaster::extent() const { return state_->extent; }
 
 std::string RayCaster::instructionSet() const {

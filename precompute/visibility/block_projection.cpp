@@ -8,12 +8,15 @@
 #include "precompute/base/check.h"
 #include "precompute/base/error.h"
 #include "precompute/math/sh.h"
-#include "precompute/math/sh_rotation.h"
+#include "precompute/math/sh_rotation_soa.h"
+#include "precompute/visibility/orientations.h"
 
 namespace prt {
 namespace {
 
 constexpr size_t kChunk = 512;  // directions whose rows of the table stay in cache
+constexpr uint64_t kEvenBits = 0x5555555555555555u;
+static_assert(kChunk % 64 == 0, "halves are told by bits of a word");
 // A row of the lists, by halves; not a power of two, so that rows do not share cache sets.
 constexpr size_t kListStride = kChunk / 2 + 32;
 
@@ -31,21 +34,35 @@ BlockProjection::BlockProjection(const ProjectionTables& tables, size_t stride)
       lists_(kMostBlockPoints * 2 * kListStride),
       sums_(kMostBlockPoints * 2 * stride),
       cosines_(kChunk),
-      weights_(kChunk / 2) {}
+      weights_(kChunk / 2),
+      expansions_(columns() * kSoaStride),
+      differences_(columns() * kSoaStride) {}
 
 void BlockProjection::listVisible(const LevelMasks& masks, size_t start, size_t end) {
     for (auto& counts : counts_) counts.fill(0);
-    for (size_t k = start; k < end; ++k) {
-        const auto row = uint16_t(k - start);
-        const size_t half = row % 2;
-        masks.visible[k].forEach(
-            [&](size_t i) { lists_[(i * 2 + half) * kListStride + counts_[half][i]++] = row; });
+    std::array<uint64_t, 64> bits;
+    for (size_t first = start; first < end; first += 64) {
+        for (size_t w = 0; w * 64 < count_; ++w) {
+            for (size_t k = 0; k < 64; ++k) bits[k] = first + k < end ? masks.visible[first + k].words[w] : 0;
+            transposeBits(bits);  // now by items
+            for (size_t j = 0; j < 64; ++j) {
+                const size_t i = w * 64 + j;
+                for (size_t half = 0; half < 2; ++half) {
+                    uint64_t left = bits[j] & kEvenBits << half;
+                    uint16_t* list = &lists_[(i * 2 + half) * kListStride];
+                    size_t count = counts_[half][i];
+                    for (; left != 0; left &= left - 1)
+                        list[count++] = uint16_t(first - start + size_t(std::countr_zero(left)));
+                    counts_[half][i] = uint16_t(count);
+                }
+            }
+        }
     }
 }
 
 void BlockProjection::addChunk(const DirectionLevel& level, size_t i, size_t start, size_t count) {
-    const std::array<CosineSum, 2> open = cosinesAbout({&set_->x[start], &set_->y[start], &set_->z[start]},
-                                                       count, normals_[i].data(), cosines_.data());
+    const std::array<CosineSum, 2> open = cosinesAbout({&level.x[start], &level.y[start], &level.z[start]},
+                                                       count, setNormals_[i].data(), cosines_.data());
     const float* basis = &level.basis[start * stride_];
     for (size_t half = 0; half < 2; ++half) {
         const uint16_t* rows = &lists_[(i * 2 + half) * kListStride];
@@ -61,19 +78,28 @@ void BlockProjection::addChunk(const DirectionLevel& level, size_t i, size_t sta
     }
 }
 
-void BlockProjection::project(const DirectionLevel& level, int orientation, const LevelMasks& masks,
-                              std::span<const Vec3f> normals) {
+void BlockProjection::project(const DirectionLevel& level, std::span<const uint8_t> orientations,
+                              const LevelMasks& masks, std::span<const Vec3f> normals) {
     PRT_CHECK_EQ(level.stride, stride_);
     PRT_CHECK_LE(normals.size(), kMostBlockPoints);
-    set_ = &level.turned[size_t(orientation)];
-    worldFromSet_ = setOrientations()[size_t(orientation)];
-    turned_ = orientation != 0;
-    normals_.assign(normals.begin(), normals.end());
-    setNormals_ = normals_;
-    if (turned_)
-        for (Vec3f& normal : setNormals_)
-            normal = (worldFromSet_.transpose() * normal.cast<double>()).cast<float>();
-    directions_ = level.size();
+    PRT_CHECK(orientations.empty() || orientations.size() == normals.size());
+    count_ = normals.size();
+    const auto orUp = [](const Vec3f& normal) { return normal == Vec3f::Zero() ? Vec3f(0, 0, 1) : normal; };
+    setNormals_.clear();
+    unitSetNormals_.clear();
+    unitNormals_.clear();
+    for (size_t i = 0; i < count_; ++i) {
+        setNormals_.push_back(turnedBack(orientations.empty() ? 0 : orientations[i], normals[i]));
+        unitSetNormals_.push_back(orUp(setNormals_.back()));
+        unitNormals_.push_back(orUp(normals[i]));
+    }
+    sumRows(level, masks);
+    findExpansions(level.size());
+    findHalfSetDifferences(level.size());
+    if (!orientations.empty()) turnIntoWorld(orientations);
+}
+
+void BlockProjection::sumRows(const DirectionLevel& level, const LevelMasks& masks) {
     std::fill(sums_.begin(), sums_.end(), 0.0f);
     for (size_t half = 0; half < 2; ++half) {
         seen_[half].fill({});
@@ -83,32 +109,74 @@ void BlockProjection::project(const DirectionLevel& level, int orientation, cons
         throwIfInterrupted();
         const size_t end = std::min(start + kChunk, level.size());
         listVisible(masks, start, end);
-        for (size_t i = 0; i < normals.size(); ++i) addChunk(level, i, start, end - start);
+        for (size_t i = 0; i < count_; ++i) addChunk(level, i, start, end - start);
     }
 }
 
-void BlockProjection::expansion(size_t i, std::span<float> out) const {
-    const float sampleSr = float(4 * std::numbers::pi / double(directions_));
-    for (size_t c = 0; c < out.size(); ++c) out[c] = (sums(0, i)[c] + sums(1, i)[c]) * sampleSr;
-    if (tables_.weighting && normals_[i] != Vec3f::Zero())
-        tables_.weighting->projection.solve(setNormals_[i], out, openness(i) * float(std::numbers::pi), out);
-    if (turned_) rotateSh(worldFromSet_, tables_.shOrder, std::span<const float>(out), out);
+void BlockProjection::findExpansions(size_t directions) {
+    const float sampleSr = float(4 * std::numbers::pi / double(directions));
+    std::array<float, kMostBlockPoints> seen;
+    for (size_t i = 0; i < count_; ++i) {
+        seen[i] = openness(i);
+        for (size_t c = 0; c < columns(); ++c)
+            expansions_[c * kSoaStride + i] = (sums(0, i)[c] + sums(1, i)[c]) * sampleSr;
+    }
+    solve(std::span(seen.data(), count_), expansions_);
 }
 
-double BlockProjection::halfSetDifference(size_t i) const {
-    if (normals_[i] == Vec3f::Zero() || directions_ < 2) return 0;
-    const double evenSr = 4 * std::numbers::pi / double((directions_ + 1) / 2),
-                 allSr = 4 * std::numbers::pi / double(directions_);
-    std::array<float, size_t(shCount(kMaxBundleShOrder))> storage;
-    const std::span difference(storage.data(), size_t(shCount(tables_.shOrder)));
-    for (size_t c = 0; c < difference.size(); ++c)
-        difference[c] = float((allSr - evenSr) * double(sums(0, i)[c]) + allSr * double(sums(1, i)[c]));
+void BlockProjection::findHalfSetDifferences(size_t directions) {
+    halfSetDifferences_.assign(count_, 0.0f);
+    if (directions < 2) return;
+    const double evenSr = 4 * std::numbers::pi / double((directions + 1) / 2),
+                 allSr = 4 * std::numbers::pi / double(directions);
+    std::array<float, kMostBlockPoints> seen;
+    for (size_t i = 0; i < count_; ++i) {
+        seen[i] = openness(i) - seenShare(seen_[0][i], open_[0][i]);
+        for (size_t c = 0; c < columns(); ++c)
+            differences_[c * kSoaStride + i] =
+                float((allSr - evenSr) * double(sums(0, i)[c]) + allSr * double(sums(1, i)[c]));
+    }
     // Expansions are linear in the sums and the irradiance, and so is their difference.
-    if (tables_.weighting)
-        tables_.weighting->projection.solve(
-            setNormals_[i], difference,
-            (openness(i) - seenShare(seen_[0][i], open_[0][i])) * float(std::numbers::pi), difference);
-    return tables_.norm.evaluate(setNormals_[i], difference);
+    solve(std::span(seen.data(), count_), differences_);
+    tables_.norm.evaluateSoa(unitSetNormals_, kSoaStride, differences_, halfSetDifferences_);
+}
+
+void BlockProjection::solve(std::span<const float> openness, std::vector<float>& values) const {
+    if (!tables_.weighting) return;
+    std::array<float, kMostBlockPoints> irradiance;
+    for (size_t i = 0; i < count_; ++i) irradiance[i] = openness[i] * float(std::numbers::pi);
+    tables_.weighting->projection.solveSoa(unitSetNormals_, kSoaStride, values,
+                                           std::span(irradiance.data(), count_), values);
+}
+
+void BlockProjection::turnIntoWorld(std::span<const uint8_t> orientations) {
+    std::vector<float> rotations(9 * kSoaStride);
+    for (size_t i = 0; i < count_; ++i) {
+        const Mat3d& rotation = setOrientations()[orientations[i]];
+        for (size_t row = 0; row < 3; ++row)
+            for (size_t column = 0; column < 3; ++column)
+                rotations[(3 * row + column) * kSoaStride + i] =
+                    float(rotation(Eigen::Index(row), Eigen::Index(column)));
+    }
+    rotateShSoa(rotations, tables_.shOrder, count_, kSoaStride, expansions_, differences_);
+    for (size_t c = 0; c < columns(); ++c)
+        for (size_t i = 0; i < count_; ++i)  // the first stays exactly as it is
+            if (orientations[i] != 0) expansions_[c * kSoaStride + i] = differences_[c * kSoaStride + i];
+}
+
+void BlockProjection::expansion(size_t i, std::span<float> out) const {
+    for (size_t c = 0; c < out.size(); ++c) out[c] = expansions_[c * kSoaStride + i];
+}
+
+void BlockProjection::compare(std::span<const uint32_t> items, std::span<const float> coefficients,
+                              std::span<float> out) const {
+    PRT_CHECK_EQ(items.size(), count_);
+    std::vector<float> differences(columns() * kSoaStride);
+    for (size_t i = 0; i < count_; ++i)
+        for (size_t c = 0; c < columns(); ++c)
+            differences[c * kSoaStride + i] =
+                expansions_[c * kSoaStride + i] - coefficients[size_t(items[i]) * columns() + c];
+    tables_.norm.evaluateSoa(unitNormals_, kSoaStride, differences, out);
 }
 
 }  // namespace prt

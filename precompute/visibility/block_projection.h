@@ -9,6 +9,7 @@
 
 #include "precompute/math/irradiance_norm.h"
 #include "precompute/math/irradiance_projection.h"
+#include "precompute/math/sh.h"
 #include "precompute/visibility/accumulate.h"
 #include "precompute/visibility/level_masks.h"
 
@@ -39,33 +40,48 @@ class BlockProjection {
     /// @param stride  of the levels' tables
     BlockProjection(const ProjectionTables& tables, size_t stride);
 
-    /// @param orientation  of the block
-    /// @param normals      [items of the block] unit, world; zero: no points, everything comes out zero
-    void project(const DirectionLevel& level, int orientation, const LevelMasks& masks,
+    /// @param orientations  [items of the block], or empty: all the first
+    /// @param normals       [items of the block] unit, world; zero: no points, everything comes out zero
+    void project(const DirectionLevel& level, std::span<const uint8_t> orientations, const LevelMasks& masks,
                  std::span<const Vec3f> normals);
 
     /// @param out  [n²] the expansion of item i, world
     void expansion(size_t i, std::span<float> out) const;
     /// (1/π)∫V max(0, n·ω) about the item's normal by this set, as a share of what nothing blocks.
     float openness(size_t i) const { return seenShare(seen_[0][i] + seen_[1][i], open_[0][i] + open_[1][i]); }
-    /// Irradiance norm of the difference between the expansion and that of every second direction.
-    double halfSetDifference(size_t i) const;
+    /// [items] irradiance norm of the difference between each expansion and that of every second direction.
+    std::span<const float> halfSetDifferences() const { return halfSetDifferences_; }
+    /// Irradiance norm of the differences from other expansions.
+    /// @param items         [items of the block] rows of
+    /// @param coefficients  [row × n²] world
+    /// @param out           [items of the block]
+    void compare(std::span<const uint32_t> items, std::span<const float> coefficients,
+                 std::span<float> out) const;
 
   private:
+    // Of arrays by coefficient; not a power of two, so that rows do not share cache sets.
+    static constexpr size_t kSoaStride = kMostBlockPoints + 16;
+
+    size_t columns() const { return size_t(shCount(tables_.shOrder)); }
+    void sumRows(const DirectionLevel& level, const LevelMasks& masks);
     void listVisible(const LevelMasks& masks, size_t start, size_t end);
     void addChunk(const DirectionLevel& level, size_t i, size_t start, size_t count);
+    void findExpansions(size_t directions);
+    void findHalfSetDifferences(size_t directions);
+    void solve(std::span<const float> openness, std::vector<float>& values) const;
+    void turnIntoWorld(std::span<const uint8_t> orientations);
     float* sums(size_t half, size_t i) { return &sums_[(i * 2 + half) * stride_]; }
     const float* sums(size_t half, size_t i) const { return &sums_[(i * 2 + half) * stride_]; }
 
     const ProjectionTables& tables_;
-    size_t stride_, directions_ = 0;
-    const TurnedSet* set_ = nullptr;
-    Mat3d worldFromSet_ = Mat3d::Identity();
-    bool turned_ = false;
-    std::vector<Vec3f> normals_, setNormals_;  // in the world, and turned back to the set as it is
+    size_t stride_, count_ = 0;  // floats per row of the levels' tables; items
+    // Of items, turned back to the set as it is; with +Z for zero; in the world, with +Z for zero.
+    std::vector<Vec3f> setNormals_, unitSetNormals_, unitNormals_;
     std::vector<uint16_t> lists_;  // [kMostBlockPoints × 2 × row] visible directions of a chunk, by half
     std::vector<float> sums_;      // [kMostBlockPoints × 2 × stride]
     std::vector<float> cosines_, weights_;
+    std::vector<float> expansions_, differences_;  // [n² × kSoaStride]
+    std::vector<float> halfSetDifferences_;
     std::array<std::array<uint16_t, kMostBlockPoints>, 2> counts_{};
     std::array<std::array<CosineSum, kMostBlockPoints>, 2> seen_{},
         open_{};  // sums of cosines about the normal

@@ -21,22 +21,6 @@ constexpr double kSearchSpacings = 2.5;
 // by some of these.
 constexpr uint32_t kAuditStep = 16;
 
-TurnedSet turnedSet(const std::vector<Vec3f>& directions, size_t orientation) {
-    TurnedSet set;
-    for (const Vec3f& direction : directions) {
-        // The first is the identity: exact.
-        const Vec3f turned =
-            orientation == 0
-                ? direction
-                : Vec3f((setOrientations()[orientation] * direction.cast<double>()).cast<float>());
-        set.directions.push_back(turned);
-        set.x.push_back(turned.x());
-        set.y.push_back(turned.y());
-        set.z.push_back(turned.z());
-    }
-    return set;
-}
-
 }  // namespace
 
 template <size_t K>
@@ -85,14 +69,20 @@ const DirectionLevel& DirectionLevels::operator[](size_t level) const {
     std::call_once(slot.once, [&] {
         DirectionLevel& made = slot.level;
         const std::vector<Vec3f> directions = sphericalFibonacci(sizes_[level]);
-        for (size_t o = 0; o < made.turned.size(); ++o) made.turned[o] = turnedSet(directions, o);
+        for (const Vec3f& direction : directions) {
+            made.x.push_back(direction.x());
+            made.y.push_back(direction.y());
+            made.z.push_back(direction.z());
+            for (int o = 0; o < kOrientations; ++o)
+                made.turned[size_t(o)].push_back(turnedIntoWorld(o, direction));
+        }
         const size_t columns = size_t(shCount(shOrder_));
         made.stride = paddedColumns(columns);
         made.basis.assign(made.size() * made.stride, 0.0f);
         for (size_t k = 0; k < made.size(); ++k)
             evalSh(shOrder_, directions[k], std::span(&made.basis[k * made.stride], columns));
-        if (level == 0) return;
         for (const uint32_t k : mortonOrder(directions)) made.order.push_back(uint16_t(k));
+        if (level == 0) return;
         const std::vector<Vec3f> coarser = sphericalFibonacci(sizes_[level - 1]);
         for (size_t k = 0; k < made.size(); ++k) {
             made.coarser.push_back(nearestDirections<4>(coarser, directions[k], UINT32_MAX));

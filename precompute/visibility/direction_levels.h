@@ -12,18 +12,13 @@
 
 namespace prt {
 
-/// A set of directions in the world.
-struct TurnedSet {
-    std::vector<Vec3f> directions;
-    std::vector<float> x, y, z;  ///< the same
-};
-
 /// One spherical Fibonacci set.
 struct DirectionLevel {
-    /// By each of setOrientations(): what is traced, and what horizons are about.
-    std::array<TurnedSet, kOrientations> turned;
-    std::vector<float> basis;  ///< [N×stride] basis functions of the set as it is, rows padded with zeros
-    size_t stride = 0;         ///< paddedColumns(n²)
+    /// [N] by each of setOrientations(): what is traced.
+    std::array<std::vector<Vec3f>, kOrientations> turned;
+    std::vector<float> x, y, z;  ///< [N] the set as it is
+    std::vector<float> basis;    ///< [N×stride] basis functions of the set as it is, rows padded with zeros
+    size_t stride = 0;           ///< paddedColumns(n²)
     /// [N] the nearest directions of the coarser set; empty for the first set
     std::vector<std::array<uint16_t, 4>> coarser;
     /// [N] the nearest other directions of the same set; empty for the first set
@@ -33,7 +28,7 @@ struct DirectionLevel {
     /// Every so many directions one is traced whatever its neighbours say; 0: none.
     uint32_t auditStep = 0;
 
-    size_t size() const { return turned[0].directions.size(); }
+    size_t size() const { return x.size(); }
 };
 
 /// Indices of the K directions of the Fibonacci set of `set.size()` that are nearest to `direction`, nearest

@@ -2,32 +2,39 @@
 // [KellerHeidrich2001].
 #include "precompute/visibility/orientations.h"
 
-#include "precompute/math/directions.h"
+#include <Eigen/Geometry>
 
 namespace prt {
 namespace {
 
-// Takes the spiral's pole to a direction far from the poles of the others, and to none along an axis: faces
-// of boxes would lie in rings of directions.
-Mat3d poleTo(const Vec3d& pole) {
-    const Frame frame = frameAround(pole.normalized().cast<float>());
-    Mat3d rotation;
-    rotation.col(0) = frame.tangent.cast<double>();
-    rotation.col(1) = frame.normal.cast<double>();
-    // Exact where the frame is good to float alone.
-    rotation.col(1).normalize();
-    rotation.col(0) = (rotation.col(0) - rotation.col(0).dot(rotation.col(1)) * rotation.col(1)).normalized();
-    rotation.col(2) = rotation.col(0).cross(rotation.col(1));
-    return rotation;
+// Errors of sets of 256 directions and more differ as much as those of random rotations, and streams of rays
+// are little slower than of parallel ones (tools/docs/performance.md).
+constexpr double kTiltRad = 0.04;
+
+Mat3d tilt(double x, double y, double z) {
+    return Eigen::AngleAxisd(kTiltRad, Vec3d(x, y, z).normalized()).toRotationMatrix();
 }
 
 }  // namespace
 
 const std::array<Mat3d, kOrientations>& setOrientations() {
+    // About the corners of a tetrahedron, relative to the first: no direction stays where it was under more
+    // than two of them.
     static const std::array<Mat3d, kOrientations> orientations = {
-        Mat3d(Mat3d::Identity()), poleTo({0.93, 0.31, 0.19}), poleTo({-0.23, 0.37, 0.90}),
-        poleTo({0.57, -0.58, -0.58})};
+        Mat3d(Mat3d::Identity()), Mat3d(tilt(1, -1, -1) * tilt(1, 1, 1).transpose()),
+        Mat3d(tilt(-1, 1, -1) * tilt(1, 1, 1).transpose()),
+        Mat3d(tilt(-1, -1, 1) * tilt(1, 1, 1).transpose())};
     return orientations;
+}
+
+Vec3f turnedIntoWorld(int orientation, const Vec3f& direction) {
+    if (orientation == 0) return direction;
+    return (setOrientations()[size_t(orientation)] * direction.cast<double>()).cast<float>();
+}
+
+Vec3f turnedBack(int orientation, const Vec3f& vector) {
+    if (orientation == 0) return vector;
+    return (setOrientations()[size_t(orientation)].transpose() * vector.cast<double>()).cast<float>();
 }
 
 uint8_t vertexOrientation(uint32_t vertex) {

@@ -55,6 +55,18 @@ inline PointMask without(const PointMask& a, const PointMask& b) {
     return result;
 }
 
+/// Bit j of word i becomes bit i of word j.
+/// @source [Warren2012, Sec. 7-3]: blocks of half the size swap places, step by step
+inline void transposeBits(std::array<uint64_t, 64>& words) {
+    uint64_t mask = 0x00000000ffffffffu;
+    for (size_t size = 32; size > 0; size /= 2, mask ^= mask << size)
+        for (size_t i = 0; i < 64; i = (i + size + 1) & ~size) {
+            const uint64_t moved = (words[i] >> size ^ words[i + size]) & mask;
+            words[i] ^= moved << size;
+            words[i + size] ^= moved;
+        }
+}
+
 /// Moves the chosen bits of a word together, to the low end, in their order.
 /// @source [Warren2012, Sec. 7-4]: the moves by powers of two depend on the choice alone
 class BitCompressor {

@@ -58,20 +58,15 @@ class Batch {
         : bake_(bake),
           result_(result),
           rays_(bake.caster, bake.items),
-          projection_(bake.tables, bake.levels[0].stride),
-          expansion_(bake.columns) {}
+          projection_(bake.tables, bake.levels[0].stride) {}
 
     /// @param items  near each other, in order
     void run(std::span<const uint32_t> items) {
         std::vector<Block> blocks;
-        for (int orientation = 0; orientation < kOrientations; ++orientation)
-            for (const uint32_t item : items) {
-                if (bake_.items.orientation(item) != orientation) continue;
-                if (blocks.empty() || blocks.back().orientation != orientation ||
-                    blocks.back().items.size() == blockPoints())
-                    blocks.push_back({orientation, {}, {}, {}});
-                blocks.back().items.push_back(item);
-            }
+        for (size_t begin = 0; begin < items.size(); begin += blockPoints()) {
+            const auto block = items.subspan(begin, std::min(blockPoints(), items.size() - begin));
+            blocks.push_back({{block.begin(), block.end()}, {}, {}});
+        }
         for (size_t level = 0; level < bake_.levels.count() && !blocks.empty(); ++level) {
             const bool last = level + 1 == bake_.levels.count();
             for (Block& block : blocks) {
@@ -86,7 +81,6 @@ class Batch {
 
   private:
     struct Block {
-        int orientation = 0;
         std::vector<uint32_t> items;
         LevelMasks answers;  // of the set before; empty at the first
         PointMask staying;   // items that go on to the next set
@@ -105,29 +99,34 @@ class Batch {
             traceSilhouettes(rays_, level, block.answers, answers, cosines);
         block.answers = std::move(answers);
         stages_.trace += clock_.lap();
-        normals_.clear();
-        for (const uint32_t item : block.items) normals_.push_back(bake_.items.normal(item));
-        projection_.project(level, block.orientation, block.answers, normals_);
+        project(block, level, levelIndex);
         block.staying = {};
         for (size_t i = 0; i < block.items.size(); ++i) {
-            finish(block, i, levelIndex, cosines);
+            finish(block, i, cosines);
             if (!last && double(result_.error[block.items[i]]) > bake_.options.error) block.staying.set(i);
         }
         stages_.project += clock_.lap();
     }
 
-    // Writes what this set says of item i of the block.
-    void finish(const Block& block, size_t i, size_t levelIndex, const SharedCosines& cosines) {
-        const uint32_t item = block.items[i];
-        const std::span stored(&result_.coefficients[size_t(item) * bake_.columns], bake_.columns);
-        projection_.expansion(i, expansion_);
-        double error = kHalfSetShare * projection_.halfSetDifference(i);
-        if (levelIndex > 0) {
-            for (size_t c = 0; c < stored.size(); ++c) stored[c] = expansion_[c] - stored[c];
-            error = std::max(error, kCoarserSetShare * bake_.tables.norm.evaluate(normals_[i], stored));
+    void project(const Block& block, const DirectionLevel& level, size_t levelIndex) {
+        normals_.clear();
+        orientations_.clear();
+        for (const uint32_t item : block.items) {
+            normals_.push_back(bake_.items.normal(item));
+            if (!bake_.items.orientations.empty()) orientations_.push_back(bake_.items.orientations[item]);
         }
-        std::copy(expansion_.begin(), expansion_.end(), stored.begin());
-        result_.error[item] = float(error);
+        projection_.project(level, orientations_, block.answers, normals_);
+        coarserDifferences_.assign(block.items.size(), 0.0f);
+        if (levelIndex > 0) projection_.compare(block.items, result_.coefficients, coarserDifferences_);
+    }
+
+    // Writes what this set says of item i of the block.
+    void finish(const Block& block, size_t i, const SharedCosines& cosines) {
+        const uint32_t item = block.items[i];
+        projection_.expansion(i,
+                              std::span(&result_.coefficients[size_t(item) * bake_.columns], bake_.columns));
+        result_.error[item] = float(std::max(kHalfSetShare * double(projection_.halfSetDifferences()[i]),
+                                             kCoarserSetShare * double(coarserDifferences_[i])));
         if (rays_.shared().test(i))
             result_.ao[item] = seenShare(cosines.seen[i], cosines.open[i]);
         else
@@ -140,14 +139,11 @@ class Batch {
         size_t first = 0;
         while (first < blocks.size()) {
             Block together;
-            together.orientation = blocks[first].orientation;
             MaskGather gather;
             size_t next = first;
             for (; next < blocks.size(); ++next) {
                 const Block& block = blocks[next];
-                if (block.orientation != together.orientation ||
-                    together.items.size() + block.staying.count() > blockPoints())
-                    break;
+                if (together.items.size() + block.staying.count() > blockPoints()) break;
                 gather.add(block.answers, block.staying);
                 block.staying.forEach([&](size_t i) { together.items.push_back(block.items[i]); });
             }
@@ -162,8 +158,9 @@ class Batch {
     BakeResult& result_;
     RayBlock rays_;
     BlockProjection projection_;
-    std::vector<float> expansion_;
     std::vector<Vec3f> normals_;
+    std::vector<uint8_t> orientations_;
+    std::vector<float> coarserDifferences_;
     StageClock clock_;
     BakeStages stages_;
 };
@@ -208,9 +205,7 @@ RayCasting chooseCasting(const RayCaster& caster, const BakeItems& items, std::s
     if (distances.empty()) return RayCasting::Stream;
     const auto median = distances.begin() + ptrdiff_t(distances.size() / 2);
     std::nth_element(distances.begin(), median, distances.end());
-    // Points of one orientation are farther from each other.
-    const float spacing = items.orientations.empty() ? *median : *median * std::sqrt(float(kOrientations));
-    return caster.packetsAreFaster(spacing) ? RayCasting::Packets : RayCasting::Stream;
+    return caster.packetsAreFaster(*median) ? RayCasting::Packets : RayCasting::Stream;
 }
 
 void markInside(const RayCaster& caster, const BakeItems& items, const BakeOptions& options,

@@ -166,7 +166,7 @@ TEST(RayCaster, PacketsAgreeWithStreams) {
                 origins.push_back(caster.offsetOrigin(mesh.point(7 * i, 0.3, 0.4), mesh.normal(7 * i)));
             std::vector<uint8_t> streams(count, 7), packets(count, 7);
             caster.occluded(origins, direction, streams);
-            caster.occludedPackets(origins, direction, packets);
+            caster.occludedPackets(origins, std::vector<Vec3f>(origins.size(), direction), packets);
             EXPECT_EQ(streams, packets) << count;
             hits += size_t(std::count(streams.begin(), streams.end(), 1));
             rays += count;
@@ -295,6 +295,38 @@ TEST(RayCaster, SnapsToThePlaneOfATriangle) {
         const Vec3f far = on + 0.1f * mesh.normal(t);
         EXPECT_EQ(caster.snapToPlane(far, uint32_t(t)), far);
     }
+}
+
+TEST(RayCaster, ManyFirstHitsAreEachOfThem) {
+    const shapes::Mesh mesh = shapes::sphere(2, {0.5, 0, 0}, 4);
+    const RayCaster caster(mesh.positions, mesh.indices);
+    std::mt19937 random(8);
+    std::normal_distribution<float> gauss;
+    std::vector<Vec3f> origins, directions;
+    for (int i = 0; i < 1000; ++i) {
+        origins.push_back(3 * Vec3f(gauss(random), gauss(random), gauss(random)));
+        directions.push_back(Vec3f(gauss(random), gauss(random), gauss(random)).normalized());
+    }
+    std::vector<RayHit> hits(1000);
+    caster.firstHits(origins, directions, hits);
+    RayStream stream(caster);
+    int found = 0;
+    for (size_t i = 0; i < 1000; ++i) {
+        const RayHit one = caster.firstHit(origins[i], directions[i]);
+        EXPECT_EQ(hits[i].triangle, one.triangle);
+        EXPECT_EQ(hits[i].backFace, one.backFace);
+        EXPECT_NEAR(hits[i].distance, one.distance, 1e-5f * (1 + one.distance));
+        stream.clear();
+        stream.add(origins[i], directions[i]);
+        stream.cast();
+        EXPECT_EQ(stream.blocked(0), one.triangle != RayHit{}.triangle);
+        if (one.triangle == RayHit{}.triangle) continue;
+        ++found;
+        EXPECT_EQ(caster.firstHit(origins[i], directions[i], 0.99f * one.distance).triangle,
+                  RayHit{}.triangle);
+        EXPECT_EQ(caster.firstHit(origins[i], directions[i], 1.01f * one.distance).triangle, one.triangle);
+    }
+    EXPECT_GT(found, 100);
 }
 
 }  // namespace

@@ -46,6 +46,18 @@ TEST(BitCompressor, KeepsChosenBitsInOrder) {
     }
 }
 
+TEST(TransposeBits, SwapsWordsAndBits) {
+    const std::vector<uint64_t> random = randomWords(64);
+    std::array<uint64_t, 64> words;
+    std::copy(random.begin(), random.end(), words.begin());
+    std::array<uint64_t, 64> turned = words;
+    transposeBits(turned);
+    for (size_t i = 0; i < 64; ++i)
+        for (size_t j = 0; j < 64; ++j) EXPECT_EQ(turned[j] >> i & 1, words[i] >> j & 1);
+    transposeBits(turned);
+    EXPECT_EQ(turned, words);
+}
+
 TEST(MaskGather, PutsChosenPointsOfSeveralBlocksInARow) {
     std::mt19937_64 random(9);
     constexpr size_t kDirections = 5;

@@ -19,6 +19,7 @@
 #include "precompute/math/irradiance_norm.h"
 #include "precompute/math/sh.h"
 #include "precompute/math/sh_rotation.h"
+#include "precompute/visibility/orientations.h"
 #include "tools/measure/basis_signals.h"
 
 namespace prt::tools {
@@ -104,6 +105,8 @@ std::vector<Variant> variantsOf(const BandingStudy& study) {
     std::vector<Variant> variants;
     for (const int count : study.counts) variants.push_back({"fibonacci", count, 1});
     for (const int count : study.counts) variants.push_back({"fibonacci-rotated", count, study.rotated});
+    for (const int count : study.counts)
+        variants.push_back({"fibonacci-tiled4", count, kOrientations, Dealing::Tiled});
     variants.push_back({"adaptive-fibonacci", 0, 1});
     variants.push_back({"adaptive-fibonacci-dealt4", 0, 4});
     variants.push_back({"adaptive-fibonacci-tiled4", 0, 4, Dealing::Tiled});
@@ -373,7 +376,8 @@ TurnedBakes::TurnedBakes(const Scene& scene, int turns, uint64_t seed) {
     PRT_CHECK_LE(1, turns);
     SignalRandom random(seed);
     for (int t = 0; t < turns; ++t) {
-        turns_.push_back(t == 0 ? Mat3d(Mat3d::Identity()) : random.rotation());
+        turns_.push_back(t < kOrientations ? Mat3d(setOrientations()[size_t(t)].transpose())
+                                           : random.rotation());
         std::vector<Vec3f> positions;
         for (const Vec3f& position : scene.positions) positions.push_back(times(turns_.back(), position));
         casters_.emplace_back(positions, scene.indices);

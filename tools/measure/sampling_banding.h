@@ -20,7 +20,7 @@ Scene bandingScene();
 /// and the expansions back.
 class TurnedBakes {
   public:
-    /// @param turns  >= 1; the first leaves the sets as they are, the others are random
+    /// @param turns  >= 1; the first are those of the bake (setOrientations), the others random
     TurnedBakes(const Scene& scene, int turns, uint64_t seed);
 
     /// @param dealt  [points] 0..turns − 1: the orientation of each
