@@ -16,6 +16,7 @@
 #include "precompute/math/directions.h"
 #include "precompute/visibility/find_inside.h"
 #include "precompute/visibility/orientations.h"
+#include "precompute/visibility/surely_outside.h"
 #include "precompute/visibility/trace_blocks.h"
 
 namespace prt {
@@ -96,29 +97,21 @@ std::vector<Corner> thinned(const std::vector<Corner>& corners, double sum) {
 // Directions over the sphere that tell whether a sub-point is inside geometry; half lie above the horizon.
 constexpr int kHiddenDirections = 64;
 
-// As for whole items, with fewer rays.
-bool looksHidden(const RayCaster& caster, const SurfacePoint& point, std::span<const Vec3f> directions,
-                 std::span<const uint8_t> doubleSided) {
-    InsideCount count;
-    for (const Vec3f& direction : directions) {
-        if (!(point.normal.dot(direction) > 0)) continue;
-        if (count.isDecided()) break;
-        count.add(caster, point, direction, doubleSided);
-    }
-    return count.isInside();
-}
-
-// Non-zero for sub-points inside geometry.
+// Non-zero for sub-points inside geometry: as for whole items, with fewer rays.
 std::vector<uint8_t> findHiddenParts(const RayCaster& caster, const TexelSurface& surface,
-                                     const BakeOptions& options) {
+                                     const BakeOptions& options, std::span<const uint8_t> outside) {
     std::vector<uint8_t> hidden(surface.subPoints.size(), 0);
     if (!options.findInside) return hidden;
-    const std::vector<Vec3f> directions = spreadDirections(kHiddenDirections);
-    parallelFor(hidden.size(), 1024, [&](size_t begin, size_t end) {
-        throwIfInterrupted();
-        for (size_t p = begin; p < end; ++p)
-            hidden[p] = looksHidden(caster, surface.subPoints[p], directions, options.doubleSided);
-    });
+    std::vector<SurfacePoint> doubtful;
+    std::vector<size_t> places;
+    for (size_t p = 0; p < hidden.size(); ++p) {
+        if (!outside.empty() && outside[surface.subPoints[p].triangle]) continue;
+        doubtful.push_back(surface.subPoints[p]);
+        places.push_back(p);
+    }
+    const std::vector<uint8_t> inside =
+        findInsidePoints(caster, doubtful, spreadDirections(kHiddenDirections), options.doubleSided);
+    for (size_t i = 0; i < places.size(); ++i) hidden[places[i]] = inside[i];
     return hidden;
 }
 
@@ -126,6 +119,7 @@ std::vector<uint8_t> findHiddenParts(const RayCaster& caster, const TexelSurface
 struct TexelItems {
     std::vector<SurfacePoint> points;
     std::vector<uint32_t> firstPoint, shareEnd;
+    std::vector<uint8_t> hidden;  // those that nothing sees
 };
 
 // Parts of each texel that can be seen, all where none can; whole texels that nothing hides keep one point.
@@ -146,6 +140,7 @@ TexelItems makeTexelItems(const TexelSurface& surface, const std::vector<uint8_t
             seen += double(part.share);
             ++seenCount;
         }
+        items.hidden.push_back(seenCount == 0);
         if (seenCount == parts.size() && surface.whole[i]) {
             items.points.push_back(surface.points[i]);
             items.shareEnd.push_back(0xffffffffu);
@@ -187,8 +182,13 @@ BakeResult bakeTexelVisibility(const RayCaster& caster, const TexelSurface& surf
     PRT_CHECK_EQ(surface.firstPart.size(), count + 1);
     PRT_CHECK_EQ(surface.firstPart.back(), surface.parts.size());
     PRT_CHECK_EQ(surface.whole.size(), count);
-    const TexelItems texels = makeTexelItems(surface, findHiddenParts(caster, surface, options));
+    // Looking at faces pays where there are fewer of them than sub-points.
+    std::vector<uint8_t> outside;
+    if (options.findInside && caster.triangleCount() < surface.subPoints.size())
+        outside = findSurelyOutside(caster, options.doubleSided, surface.subPoints.size() / kFacePrice);
+    const TexelItems texels = makeTexelItems(surface, findHiddenParts(caster, surface, options, outside));
     BakeItems items;
+    if (options.findInside) items.hidden = texels.hidden;
     items.points = texels.points;
     items.firstPoint = texels.firstPoint;
     items.shareEnd = texels.shareEnd;

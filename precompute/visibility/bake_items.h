@@ -21,6 +21,8 @@ struct BakeItems {
     std::span<const Vec3f> normals;
     /// [items] index into setOrientations(); empty: all the first
     std::span<const uint8_t> orientations;
+    /// [items] 1 for items all of whose sub-points are known to be inside geometry; empty: not known
+    std::span<const uint8_t> hidden;
 
     size_t count() const { return firstPoint.empty() ? points.size() : firstPoint.size() - 1; }
     uint32_t begin(uint32_t item) const { return firstPoint.empty() ? item : firstPoint[item]; }

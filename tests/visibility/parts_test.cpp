@@ -185,7 +185,7 @@ TEST(DealingOfDirections, SharesAreEvenOverTheSphere) {
         ShareEnds ends(1);
         for (uint32_t p = first[item]; p < first[item + 1]; ++p) shareEnd.push_back(ends.next(shares[p]));
     }
-    const BakeItems items{points, first, shareEnd, {}, {}};
+    const BakeItems items{points, first, shareEnd, {}, {}, {}};
     for (uint32_t item = 0; item < 3; ++item) {
         std::vector<int> count(9, 0);
         std::vector<Vec3d> sum(9, Vec3d::Zero());
