@@ -81,8 +81,8 @@ const DirectionLevel& DirectionLevels::operator[](size_t level) const {
         made.basis.assign(made.size() * made.stride, 0.0f);
         for (size_t k = 0; k < made.size(); ++k)
             evalSh(shOrder_, directions[k], std::span(&made.basis[k * made.stride], columns));
-        for (const uint32_t k : mortonOrder(directions)) made.order.push_back(uint16_t(k));
         if (level == 0) return;
+        for (const uint32_t k : mortonOrder(directions)) made.order.push_back(uint16_t(k));
         const std::vector<Vec3f> coarser = sphericalFibonacci(sizes_[level - 1]);
         for (size_t k = 0; k < made.size(); ++k) {
             made.coarser.push_back(nearestDirections<4>(coarser, directions[k], UINT32_MAX));

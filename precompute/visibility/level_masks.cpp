@@ -76,7 +76,7 @@ bool spread(RayBlock& block, const DirectionLevel& level, bool up, LevelMasks& m
 void traceAll(RayBlock& block, const DirectionLevel& level, RayCasting casting, LevelMasks& masks,
               SharedCosines& cosines) {
     reset(level, masks);
-    for (const uint16_t k : level.order) {
+    for (size_t k = 0; k < level.size(); ++k) {
         if (k % kInterruptStep == 0) throwIfInterrupted();
         masks.above[k] = block.above(level, uint32_t(k));
         masks.visible[k] = {};
