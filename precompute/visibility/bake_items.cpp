@@ -39,6 +39,18 @@ uint32_t ShareEnds::next(double share) {
     return step >= kDealSteps ? 0xffffffffu : uint32_t(step) << 24;
 }
 
+float BakeItems::openShare(uint32_t item) const {
+    const uint32_t first = begin(item), last = end(item);
+    if (first == last) return 0;
+    double sum = 0, passed = 0;
+    for (uint32_t p = first; p < last; ++p) {
+        const double upTo = p + 1 < last ? double(shareEnd[p]) * 0x1p-32 : 1;
+        sum += (upTo - passed) * 0.5 * (1 + double(normal(item).dot(points[p].normal)));
+        passed = upTo;
+    }
+    return float(std::min(1.0, sum));
+}
+
 uint32_t dealOfDirection(uint32_t item, uint32_t direction) { return dealStep(direction) + hash32(item); }
 
 uint32_t subPointOfDirection(const BakeItems& items, uint32_t item, uint32_t direction) {

@@ -28,6 +28,10 @@ struct BakeItems {
     uint32_t begin(uint32_t item) const { return firstPoint.empty() ? item : firstPoint[item]; }
     uint32_t end(uint32_t item) const { return firstPoint.empty() ? item + 1 : firstPoint[item + 1]; }
     int orientation(uint32_t item) const { return orientations.empty() ? 0 : int(orientations[item]); }
+    /// What an open item receives of constant light about its normal n, as a share of π: directions dealt to
+    /// sub-points of other normals m_p that are below their horizons are missing, Σ_p share_p (1 + n·m_p)
+    /// / 2.
+    float openShare(uint32_t item) const;
     /// Unit; zero where the item has no points.
     Vec3f normal(uint32_t item) const {
         if (begin(item) == end(item)) return Vec3f::Zero();

@@ -79,7 +79,8 @@ void BlockProjection::addChunk(const DirectionLevel& level, size_t i, size_t sta
 }
 
 void BlockProjection::project(const DirectionLevel& level, std::span<const uint8_t> orientations,
-                              const LevelMasks& masks, std::span<const Vec3f> normals) {
+                              const LevelMasks& masks, std::span<const Vec3f> normals,
+                              const PointMask& shared, std::span<const float> openShares) {
     PRT_CHECK_EQ(level.stride, stride_);
     PRT_CHECK_LE(normals.size(), kMostBlockPoints);
     PRT_CHECK(orientations.empty() || orientations.size() == normals.size());
@@ -94,6 +95,7 @@ void BlockProjection::project(const DirectionLevel& level, std::span<const uint8
         unitNormals_.push_back(orUp(normals[i]));
     }
     sumRows(level, masks);
+    findOpenness(level, masks, shared, openShares);
     findExpansions(level.size());
     findHalfSetDifferences(level.size());
     if (!orientations.empty()) turnIntoWorld(orientations);
@@ -113,15 +115,31 @@ void BlockProjection::sumRows(const DirectionLevel& level, const LevelMasks& mas
     }
 }
 
+void BlockProjection::findOpenness(const DirectionLevel& level, const LevelMasks& masks,
+                                   const PointMask& shared, std::span<const float> openShares) {
+    PRT_CHECK_EQ(openShares.size(), count_);
+    for (size_t i = 0; i < count_; ++i)
+        openness_[i] = seenShare(seen_[0][i] + seen_[1][i], open_[0][i] + open_[1][i]);
+    if (!shared.any()) return;
+    // Sub-points have horizons of their own: which directions these take from an item is a sample, whose
+    // error the ratio to what is above them does not have.
+    std::array<CosineSum, kMostBlockPoints> above{};
+    for (size_t k = 0; k < level.size(); ++k)
+        (masks.above[k] & shared).forEach([&](size_t i) {
+            const Vec3f& n = setNormals_[i];
+            const float cosine = n.x() * level.x[k] + n.y() * level.y[k] + n.z() * level.z[k];
+            above[i] += {double(std::max(0.0f, cosine)), cosine > 0};
+        });
+    shared.forEach(
+        [&](size_t i) { openness_[i] = openShares[i] * seenShare(seen_[0][i] + seen_[1][i], above[i]); });
+}
+
 void BlockProjection::findExpansions(size_t directions) {
     const float sampleSr = float(4 * std::numbers::pi / double(directions));
-    std::array<float, kMostBlockPoints> seen;
-    for (size_t i = 0; i < count_; ++i) {
-        seen[i] = openness(i);
+    for (size_t i = 0; i < count_; ++i)
         for (size_t c = 0; c < columns(); ++c)
             expansions_[c * kSoaStride + i] = (sums(0, i)[c] + sums(1, i)[c]) * sampleSr;
-    }
-    solve(std::span(seen.data(), count_), expansions_);
+    solve(std::span(openness_.data(), count_), expansions_);
 }
 
 void BlockProjection::findHalfSetDifferences(size_t directions) {
@@ -131,7 +149,8 @@ void BlockProjection::findHalfSetDifferences(size_t directions) {
                  allSr = 4 * std::numbers::pi / double(directions);
     std::array<float, kMostBlockPoints> seen;
     for (size_t i = 0; i < count_; ++i) {
-        seen[i] = openness(i) - seenShare(seen_[0][i], open_[0][i]);
+        seen[i] = seenShare(seen_[0][i] + seen_[1][i], open_[0][i] + open_[1][i]) -
+                  seenShare(seen_[0][i], open_[0][i]);
         for (size_t c = 0; c < columns(); ++c)
             differences_[c * kSoaStride + i] =
                 float((allSr - evenSr) * double(sums(0, i)[c]) + allSr * double(sums(1, i)[c]));

@@ -42,13 +42,16 @@ class BlockProjection {
 
     /// @param orientations  [items of the block], or empty: all the first
     /// @param normals       [items of the block] unit, world; zero: no points, everything comes out zero
+    /// @param shared        items of several sub-points, or one of another normal
+    /// @param openShares    [items of the block] BakeItems::openShare of the shared ones
     void project(const DirectionLevel& level, std::span<const uint8_t> orientations, const LevelMasks& masks,
-                 std::span<const Vec3f> normals);
+                 std::span<const Vec3f> normals, const PointMask& shared, std::span<const float> openShares);
 
     /// @param out  [n²] the expansion of item i, world
     void expansion(size_t i, std::span<float> out) const;
-    /// (1/π)∫V max(0, n·ω) about the item's normal by this set, as a share of what nothing blocks.
-    float openness(size_t i) const { return seenShare(seen_[0][i] + seen_[1][i], open_[0][i] + open_[1][i]); }
+    /// (1/π)∫V max(0, n·ω) about the item's normal by this set: what is seen as a share of what is above the
+    /// horizons, times what an open item receives.
+    float openness(size_t i) const { return openness_[i]; }
     /// [items] irradiance norm of the difference between each expansion and that of every second direction.
     std::span<const float> halfSetDifferences() const { return halfSetDifferences_; }
     /// Irradiance norm of the differences from other expansions.
@@ -66,6 +69,8 @@ class BlockProjection {
     void sumRows(const DirectionLevel& level, const LevelMasks& masks);
     void listVisible(const LevelMasks& masks, size_t start, size_t end);
     void addChunk(const DirectionLevel& level, size_t i, size_t start, size_t count);
+    void findOpenness(const DirectionLevel& level, const LevelMasks& masks, const PointMask& shared,
+                      std::span<const float> openShares);
     void findExpansions(size_t directions);
     void findHalfSetDifferences(size_t directions);
     void solve(std::span<const float> openness, std::vector<float>& values) const;
@@ -85,6 +90,7 @@ class BlockProjection {
     std::array<std::array<uint16_t, kMostBlockPoints>, 2> counts_{};
     std::array<std::array<CosineSum, kMostBlockPoints>, 2> seen_{},
         open_{};  // sums of cosines about the normal
+    std::array<float, kMostBlockPoints> openness_{};
 };
 
 }  // namespace prt

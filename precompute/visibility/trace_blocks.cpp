@@ -111,11 +111,13 @@ class Batch {
     void project(const Block& block, const DirectionLevel& level, size_t levelIndex) {
         normals_.clear();
         orientations_.clear();
+        openShares_.clear();
         for (const uint32_t item : block.items) {
             normals_.push_back(bake_.items.normal(item));
+            openShares_.push_back(bake_.items.openShare(item));
             if (!bake_.items.orientations.empty()) orientations_.push_back(bake_.items.orientations[item]);
         }
-        projection_.project(level, orientations_, block.answers, normals_);
+        projection_.project(level, orientations_, block.answers, normals_, rays_.shared(), openShares_);
         coarserDifferences_.assign(block.items.size(), 0.0f);
         if (levelIndex > 0) projection_.compare(block.items, result_.coefficients, coarserDifferences_);
     }
@@ -160,7 +162,7 @@ class Batch {
     BlockProjection projection_;
     std::vector<Vec3f> normals_;
     std::vector<uint8_t> orientations_;
-    std::vector<float> coarserDifferences_;
+    std::vector<float> openShares_, coarserDifferences_;
     StageClock clock_;
     BakeStages stages_;
 };
