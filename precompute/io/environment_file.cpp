@@ -17,22 +17,48 @@
 #include "precompute/io/exr_file.h"
 #include "precompute/io/procedural_sky.h"
 #include "precompute/io/rgbe.h"
+#include "precompute/math/environment_layout.h"
 
 namespace prt {
 namespace {
 
-constexpr int kMaxWidth = 16384;
+constexpr int kMaxSize = 16384, kMaxFace = 4096;
 // The largest finite half, as OpenEXR writes it.
 constexpr float kMaxHalf = 65504;
 
-void checkLatLongSize(int width, int height, const std::string& path) {
-    if (width != 2 * height)
+/// The layout that was named, or else that a file's attribute or shape says.
+EnvironmentLayout findLayout(const std::string& name, ExrEnvmap envmap, int width, int height,
+                             const std::string& path) {
+    const auto shape = [&] { return fmt::format("{} x {} pixels", width, height); };
+    std::optional<EnvironmentLayout> layout;
+    if (name != "auto") {
+        layout = environmentLayoutFromName(name);
+    } else if (envmap == ExrEnvmap::Cube) {
+        layout = EnvironmentLayout::OpenExrCube;
+        if (!environmentLayoutFits(*layout, width, height))
+            throw InputError(path, shape() + " are not a cube of six faces in a column");
+    } else if (envmap == ExrEnvmap::LatLong) {
+        layout = EnvironmentLayout::LatLong;
+    } else {
+        layout = detectEnvironmentLayout(width, height);
+        if (!layout)
+            throw InputError(
+                path, shape() + " are no layout of an environment",
+                "give one of the shapes " + environmentShapeList() + ", or an EXR with the envmap attribute");
+    }
+    if (!environmentLayoutFits(*layout, width, height))
+        throw InputError(
+            path,
+            fmt::format("{} are not the shape of {}", shape(), environmentLayoutNames()[size_t(*layout)]),
+            "name another layout, or let it be detected");
+    const bool faces = *layout != EnvironmentLayout::LatLong && *layout != EnvironmentLayout::AngularMap;
+    const int size = EnvironmentLayoutMap(*layout, width, height).size();
+    if (std::max(width, height) > 6 * kMaxFace || (faces ? size > kMaxFace : width > kMaxSize))
         throw InputError(path,
-                         fmt::format("{} x {} pixels are not a latitude-longitude image", width, height),
-                         "give one twice as wide as high, or an EXR with the envmap attribute");
-    if (width > kMaxWidth)
-        throw InputError(path, fmt::format("is {} pixels wide, more than {}", width, kMaxWidth),
+                         fmt::format("{} are more than {} {}", shape(), faces ? kMaxFace : kMaxSize,
+                                     faces ? "a face" : "in a row"),
                          "scale it down");
+    return *layout;
 }
 
 size_t partWithColour(const ExrReader& reader, const std::string& path) {
@@ -43,25 +69,39 @@ size_t partWithColour(const ExrReader& reader, const std::string& path) {
     throw InputError(path, "has no R, G and B channels", "save the image as RGB");
 }
 
-FloatImage loadExr(const std::string& path) {
+struct Picture {
+    FloatImage image;
+    EnvironmentLayout layout;
+};
+
+Picture loadExr(const std::string& path, const std::string& layoutName) {
     const ExrReader reader(path);
     const size_t part = partWithColour(reader, path);
     const ExrPartInfo& info = reader.parts()[part];
-    FloatImage image{info.width, info.height, 3, {}};
-    const bool cube = info.envmap == ExrEnvmap::Cube;
-    if (cube && (info.height != 6 * info.width || info.width > kMaxWidth / 4))
-        throw InputError(path,
-                         fmt::format("{} x {} pixels are not a cube of six faces in a column of at most "
-                                     "{} pixels each",
-                                     info.width, info.height, kMaxWidth / 4));
-    if (!cube) checkLatLongSize(info.width, info.height, path);
-    image.pixels.resize(size_t(info.width) * size_t(info.height) * 3);
+    Picture picture{{info.width, info.height, 3, {}},
+                    findLayout(layoutName, info.envmap, info.width, info.height, path)};
+    picture.image.pixels.resize(size_t(info.width) * size_t(info.height) * 3);
     std::vector<ExrChannelIn> channels;
     for (size_t c = 0; c < 3; ++c)
-        channels.push_back({std::string(1, "RGB"[c]), ExrType::Float, image.pixels.data() + c,
+        channels.push_back({std::string(1, "RGB"[c]), ExrType::Float, picture.image.pixels.data() + c,
                             3 * sizeof(float), size_t(info.width) * 3 * sizeof(float)});
     reader.read(part, channels);
-    return image;
+    return picture;
+}
+
+/// To latitude-longitude; one that is mirrored shows the same with its columns in reverse.
+FloatImage unwrap(Picture picture, bool mirrored) {
+    FloatImage& image = picture.image;
+    if (picture.layout != EnvironmentLayout::LatLong) {
+        const int height = latLongHeightForLayout(picture.layout, image.width, image.height);
+        return {2 * height, height, 3,
+                latLongFromLayout(picture.layout, image.width, image.height, image.pixels, mirrored)};
+    }
+    if (mirrored)
+        for (int y = 0; y < image.height; ++y)
+            for (int x = 0; x < image.width / 2; ++x)
+                std::swap_ranges(image.at(x, y), image.at(x, y) + 3, image.at(image.width - 1 - x, y));
+    return std::move(image);
 }
 
 void clampValues(Environment& environment) {
@@ -97,38 +137,39 @@ std::string skyNameList() {
 
 }  // namespace
 
-Environment loadEnvironment(const std::string& pathOrSky) {
+Environment loadEnvironment(const std::string& pathOrSky, const EnvironmentOptions& options) {
+    if (options.layout != "auto" && !environmentLayoutFromName(options.layout))
+        throw UsageError(options.layout, "is not a layout of environments",
+                         fmt::format("use auto or one of {}", fmt::join(environmentLayoutNames(), ", ")));
     Environment environment;
     environment.source = pathOrSky;
+    Picture picture{{}, EnvironmentLayout::LatLong};
     if (pathOrSky.starts_with("sky:")) {
         environment.name = pathOrSky.substr(4);
         const auto& names = proceduralSkyNames();
         if (std::find(names.begin(), names.end(), environment.name) == names.end())
             throw InputError(pathOrSky, "unknown sky", "use one of " + skyNameList());
         environment.image = makeProceduralSky(environment.name);
+        clampValues(environment);
     } else {
         const std::filesystem::path path(pathOrSky);
         environment.name = path.stem().string();
         const std::string extension = lowerExtension(path);
         if (extension == ".exr") {
-            environment.image = loadExr(pathOrSky);
+            picture = loadExr(pathOrSky, options.layout);
         } else if (extension == ".hdr") {
-            environment.image = decodeRgbe(readFile(path), pathOrSky);
-            checkLatLongSize(environment.image.width, environment.image.height, pathOrSky);
+            picture.image = decodeRgbe(readFile(path), pathOrSky);
+            picture.layout = findLayout(options.layout, ExrEnvmap::None, picture.image.width,
+                                        picture.image.height, pathOrSky);
         } else {
             throw InputError(pathOrSky, "is not an environment",
                              "give an .exr or .hdr file, or " + skyNameList());
         }
+        environment.image = std::move(picture.image);
+        clampValues(environment);
+        environment.image = unwrap({std::move(environment.image), picture.layout}, options.mirrored);
     }
-    clampValues(environment);
-    FloatImage& image = environment.image;
-    // Only now: a cube's values are clamped before they are mixed.
-    if (image.height == 6 * image.width) {
-        int height = 0;
-        image.pixels = latLongFromExrCube(image.pixels, image.width, height);
-        image.width = 2 * height;
-        image.height = height;
-    }
+    const FloatImage& image = environment.image;
     environment.contentHash = xxh3Hex(image.pixels.data(), image.pixels.size() * sizeof(float));
     return environment;
 }

@@ -20,12 +20,24 @@ struct Environment {
     LatLongView view() const { return {image.width, image.height, image.pixels}; }
 };
 
-/// Loads `.exr` or `.hdr` (latitude-longitude, or an EXR cube in ImfEnvmap layout, resampled), or makes a
-/// sky: `sky:clear`, `sky:overcast`, `sky:sunset`, `sky:uniform` (radiance 1). Says once per file how many
-/// values were clamped.
-/// @throws InputError  missing, damaged, without R, G and B channels, not 2:1 and no envmap attribute, too
-/// large
-Environment loadEnvironment(const std::string& pathOrSky);
+/// How a file is to be read.
+struct EnvironmentOptions {
+    /// One of environmentLayoutNames() (math/environment_layout.h, which describes them), or "auto": what the
+    /// EXR's envmap attribute says, else by its shape: 2:1 is latitude-longitude, 1:6 and 6:1 strips of
+    /// OpenGL faces, 4:3 and 3:4 crosses, square an angular map. A dual paraboloid has the shape of a
+    /// latitude-longitude image and must be named.
+    std::string layout = "auto";
+    /// The picture shows the other side of the sphere than its layout says: +X and −X are swapped.
+    bool mirrored = false;
+};
+
+/// Loads `.exr` or `.hdr` (in any layout, resampled to latitude-longitude unless it is), or makes a sky (see
+/// io/procedural_sky.h; the options do not matter then). Says once per file how many values were clamped,
+/// which happens before they are mixed.
+/// @throws InputError  missing, damaged, without R, G and B channels, of another shape than its layout, more
+///                     than 16384 texels in a direction (12288 or 24576 along faces)
+/// @throws UsageError  unknown layout, wrong parameters of a sky
+Environment loadEnvironment(const std::string& pathOrSky, const EnvironmentOptions& options = {});
 
 /// Names that loadEnvironment knows behind "sky:".
 const std::vector<std::string>& proceduralSkyNames();

@@ -79,10 +79,4 @@ class ExrReader {
     std::vector<ExrPartInfo> parts_;
 };
 
-/// Resamples a cube in ImfEnvmap layout (six faces in a column, the outer texels lying on the edges) to a
-/// latitude-longitude image, with 2×2 samples per texel.
-/// @param cube  [6·size×size×3]
-/// @return      [height×2·height×3] with height 2·size (at most 4096)
-std::vector<float> latLongFromExrCube(const std::vector<float>& cube, int size, int& height);
-
 }  // namespace prt
