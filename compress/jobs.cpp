@@ -9,7 +9,9 @@
 #include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
 
+#include "compress/choose_components.h"
 #include "compress/compress_visibility.h"
 #include "compress/irradiance_weights.h"
 #include "compress/pca.h"
@@ -32,8 +34,13 @@ constexpr int kMaxTableSize = 1024;
 constexpr const char* kIrradiance = "irradiance";
 
 std::string compressCommand(const CompressSettings& settings) {
-    return fmt::format("prt compress {} --components {} --weights {}", settings.bundlePath,
-                       settings.components, settings.weights);
+    if (settings.targetError == 0)
+        return fmt::format("prt compress {} --components {} --weights {}", settings.bundlePath,
+                           settings.components, settings.weights);
+    std::string command = fmt::format("prt compress {} --target-error {:g} --weights {}", settings.bundlePath,
+                                      settings.targetError, settings.weights);
+    for (const std::string& environment : settings.environments) command += " --env " + environment;
+    return command;
 }
 
 std::string hashOf(const Bundle& bundle, const std::string& name) { return bundle.find(name)->xxh3; }
@@ -49,6 +56,11 @@ void checkComponents(int components, int shOrder) {
             "--components",
             fmt::format("{} is above the {} coefficients of order {}", components, shCount(shOrder), shOrder),
             fmt::format("use at most {}", shCount(shOrder)));
+}
+
+void checkTargetError(double target) {
+    if (target != 0 && !(target >= 1e-6 && target <= 1))
+        throw UsageError("--target-error", fmt::format("{} is out of range", target), "use 1e-6 to 1");
 }
 
 void checkWeights(const std::string& weights) {
@@ -78,6 +90,99 @@ PcaMap makePcaMap(const VisibilityMap& visibility, const PcaResult& pca, std::ve
         map.attributes["weightsFloor"] = fmt::format("{:.9g}", weight.floor);
     }
     return map;
+}
+
+// Environments that a target error holds for.
+struct TargetEnvironments {
+    std::vector<std::string> names, hashes;
+    std::vector<Environment> loaded;
+
+    explicit TargetEnvironments(const CompressSettings& settings) {
+        if (settings.targetError == 0) return;
+        std::vector<std::string> sources = settings.environments;
+        if (sources.empty())
+            for (const char* sky : {"sky:clear", "sky:overcast", "sky:sunset", "sky:uniform"})
+                sources.emplace_back(sky);
+        for (const std::string& source : sources) {
+            loaded.push_back(loadEnvironment(source));
+            names.push_back(loaded.back().name);
+            hashes.push_back(loaded.back().contentHash);
+        }
+    }
+};
+
+nlohmann::json compressSettingsJson(const CompressSettings& settings, const TargetEnvironments& target) {
+    nlohmann::json json = {{"weights", settings.weights}};
+    if (settings.targetError == 0) {
+        json["components"] = settings.components;
+    } else {
+        json["target_error"] = settings.targetError;
+        json["environments"] = target.names;
+        json["environment_hashes"] = target.hashes;
+    }
+    return json;
+}
+
+nlohmann::json statisticsJson(const CompressReport& report) {
+    nlohmann::json json = {{"components", report.components},
+                           {"points", report.points},
+                           {"explained_variance", report.explainedVariance},
+                           {"relative_rmse", report.relativeRmse},
+                           {"rmse", report.rmse},
+                           {"irradiance_relative_rmse", report.irradianceRelativeRmse},
+                           {"bytes", report.bytes},
+                           {"seconds", report.seconds}};
+    for (const RelitError& error : report.relitErrors)
+        json["relit_relative_rmse"][error.environment] = error.relativeRmse;
+    return json;
+}
+
+// What an earlier run reported, where the bundle still has its result and it is just what is wanted.
+std::optional<CompressReport> reportOfSame(const Bundle& bundle, const std::string& wantedSettings) {
+    if (!bundle.find(kPca) || !bundle.staleReason(kPca, true).empty()) return std::nullopt;
+    const nlohmann::json section = nlohmann::json::parse(bundle.section("compress"), nullptr, false);
+    if (!section.is_object() || !section.contains("settings") || !section.contains("statistics") ||
+        section["settings"].dump() != wantedSettings)
+        return std::nullopt;
+    const nlohmann::json& statistics = section["statistics"];
+    if (!statistics.is_object() || !statistics.contains("components")) return std::nullopt;
+    try {
+        CompressReport report;
+        report.upToDate = true;
+        report.components = statistics["components"].get<int>();
+        report.points = statistics.at("points").get<size_t>();
+        report.explainedVariance = statistics.at("explained_variance").get<double>();
+        report.relativeRmse = statistics.at("relative_rmse").get<double>();
+        report.rmse = statistics.at("rmse").get<double>();
+        report.irradianceRelativeRmse = statistics.at("irradiance_relative_rmse").get<double>();
+        report.bytes = statistics.at("bytes").get<size_t>();
+        report.seconds = statistics.at("seconds").get<double>();
+        if (statistics.contains("relit_relative_rmse"))
+            for (const auto& [name, value] : statistics["relit_relative_rmse"].items())
+                report.relitErrors.push_back({name, value.get<double>()});
+        return report;
+    } catch (const nlohmann::json::exception&) {  // written by hand: made again
+        return std::nullopt;
+    }
+}
+
+CompressedVisibility compress(const VisibilityMap& visibility, const std::vector<uint8_t>& valid,
+                              const CompressSettings& settings, const TargetEnvironments& target,
+                              CompressReport& report) {
+    const WeightsFit fit = settings.weights == kIrradiance ? WeightsFit::Irradiance : WeightsFit::Plain;
+    if (settings.targetError == 0)
+        return compressVisibility(visibility.coefficients, valid, visibility.normals, visibility.shOrder,
+                                  visibility.projection, settings.components, fit);
+    std::vector<EnvironmentSh> environments;
+    for (const Environment& environment : target.loaded)
+        environments.push_back(
+            projectEnvironment(environment.view(), tableEnvironmentShOrder(visibility.shOrder)));
+    ChosenCompression chosen =
+        compressToError(visibility.coefficients, valid, visibility.normals, visibility.shOrder,
+                        visibility.projection, fit, environments, settings.targetError);
+    for (size_t k = 0; k < target.names.size(); ++k)
+        report.relitErrors.push_back({target.names[k], chosen.relitErrors[k]});
+    return std::move(chosen.compressed);
 }
 
 void checkTabulateSettings(const TabulateSettings& settings) {
@@ -153,8 +258,26 @@ std::string tabulateSection(const Bundle& bundle, const TabulateSettings& settin
                                        {"size", settings.size},
                                        {"sh_order", target.shOrder},
                                        {"cosine_bands", kTableCosineBands},
+                                       {"environment_hash", row.environmentHash},
                                        {"bytes", row.bytes}};
     return section.dump();
+}
+
+// Whether a table of the bundle is current, and made from this environment with these settings.
+bool hasSameTable(const Bundle& bundle, const TabulateSettings& settings, const TableTarget& target,
+                  const TabulateRow& row) {
+    if (!bundle.find(row.file) || !bundle.staleReason(row.file, true).empty()) return false;
+    const nlohmann::json section = nlohmann::json::parse(bundle.section("tabulate"), nullptr, false);
+    const nlohmann::json* table =
+        section.is_object() && section.contains("tables") && section["tables"].contains(row.file)
+            ? &section["tables"][row.file]
+            : nullptr;
+    const auto is = [&](const char* key, const nlohmann::json& value) {
+        return table->contains(key) && (*table)[key] == value;
+    };
+    return table && table->is_object() && is("environment_hash", row.environmentHash) &&
+           is("kind", settings.kind) && is("layout", settings.layout) && is("size", settings.size) &&
+           is("sh_order", target.shOrder) && is("cosine_bands", kTableCosineBands);
 }
 
 }  // namespace
@@ -162,26 +285,29 @@ std::string tabulateSection(const Bundle& bundle, const TabulateSettings& settin
 CompressReport runCompress(const CompressSettings& settings) {
     const Stopwatch watch;
     checkWeights(settings.weights);
+    checkTargetError(settings.targetError);
     const Bundle bundle = Bundle::open(settings.bundlePath);
     bundle.require(kVisibility, "prt precompute");
-    VisibilityMap visibility = readVisibilityFile(bundle.pathOf(kVisibility).string());
-    checkComponents(settings.components, visibility.shOrder);
+    const TargetEnvironments target(settings);
+    const std::string wanted = compressSettingsJson(settings, target).dump();
+    if (!settings.force)
+        if (const auto report = reportOfSame(bundle, wanted)) return *report;
 
-    const int dimension = shCount(visibility.shOrder);
+    VisibilityMap visibility = readVisibilityFile(bundle.pathOf(kVisibility).string());
+    if (settings.targetError == 0) checkComponents(settings.components, visibility.shOrder);
     std::vector<uint8_t> valid(visibility.validity.size());
     std::transform(visibility.validity.begin(), visibility.validity.end(), valid.begin(),
                    [](Validity validity) { return uint8_t(validity == Validity::Valid); });
-    CompressedVisibility compressed = compressVisibility(
-        visibility.coefficients, valid, visibility.normals, visibility.shOrder, visibility.projection,
-        settings.components, settings.weights == kIrradiance ? WeightsFit::Irradiance : WeightsFit::Plain);
+
+    CompressReport report;
+    CompressedVisibility compressed = compress(visibility, valid, settings, target, report);
     const PcaResult& pca = compressed.pca;
     std::vector<float>& weights = compressed.weights;
-    const PcaError error = pcaError(pca, visibility.coefficients, weights, valid, dimension);
+    const PcaError error =
+        pcaError(pca, visibility.coefficients, weights, valid, shCount(visibility.shOrder));
     for (size_t i = 0; i < visibility.validity.size(); ++i)
         if (visibility.validity[i] == Validity::Empty)
             std::fill_n(weights.begin() + ptrdiff_t(i) * pca.components, pca.components, 0.0f);
-
-    CompressReport report;
     report.components = pca.components;
     report.points = size_t(std::count(valid.begin(), valid.end(), uint8_t(1)));
     report.explainedVariance = pca.explainedVariance;
@@ -198,18 +324,10 @@ CompressReport runCompress(const CompressSettings& settings) {
     writePcaFile(staged.string(), makePcaMap(visibility, pca, std::move(weights), settings.weights));
     report.bytes = sizeOf(staged);
     report.seconds = watch.seconds();
-    const nlohmann::json section = {
-        {"settings", {{"components", settings.components}, {"weights", settings.weights}}},
-        {"statistics",
-         {{"points", report.points},
-          {"explained_variance", report.explainedVariance},
-          {"relative_rmse", report.relativeRmse},
-          {"rmse", report.rmse},
-          {"irradiance_relative_rmse", report.irradianceRelativeRmse},
-          {"variance", pca.variance},
-          {"total_variance", pca.totalVariance},
-          {"bytes", report.bytes},
-          {"seconds", report.seconds}}}};
+    nlohmann::json section = {{"settings", nlohmann::json::parse(wanted)},
+                              {"statistics", statisticsJson(report)}};
+    section["statistics"]["variance"] = pca.variance;
+    section["statistics"]["total_variance"] = pca.totalVariance;
     transaction.setSection("compress", section.dump());
     transaction.commit();
     report.seconds = watch.seconds();
@@ -236,6 +354,14 @@ std::vector<TabulateRow> runTabulate(const TabulateSettings& settings) {
             throw UsageError(source,
                              fmt::format("its table would have the name of that of {}", other->second),
                              "give each environment once, and files of different names");
+        row.environmentHash = environment.contentHash;
+        if (!settings.force && hasSameTable(bundle, settings, target, row)) {
+            row.upToDate = true;
+            row.bytes = bundle.find(row.file)->bytes;
+            rows.push_back(row);
+            progress.advance(1);
+            continue;
+        }
         const NormalTable table = makeTable(environment, target, settings.size);
         const std::filesystem::path staged = transaction.stage(
             row.file, target.madeFrom,
@@ -247,6 +373,8 @@ std::vector<TabulateRow> runTabulate(const TabulateSettings& settings) {
         rows.push_back(row);
         progress.advance(1);
     }
+    if (std::all_of(rows.begin(), rows.end(), [](const TabulateRow& row) { return row.upToDate; }))
+        return rows;
     transaction.setSection("tabulate", tabulateSection(bundle, settings, target, rows));
     transaction.commit();
     return rows;

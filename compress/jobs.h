@@ -12,6 +12,17 @@ struct CompressSettings {
     /// How the weights of a point are found: "irradiance" fits the irradiance of its shading normals, "plain"
     /// projects its coefficients.
     std::string weights = "irradiance";
+    /// Above 0, in place of `components`: the least number of vectors whose relative RMSE of irradiance under
+    /// every one of the environments is at most this, against the bundle's own visibility.
+    double targetError = 0;
+    std::vector<std::string> environments = {};  ///< of targetError; empty: the built-in skies
+    bool force = false;                     ///< also where the bundle has just that already
+};
+
+/// What relighting loses by compression, under one environment.
+struct RelitError {
+    std::string environment;
+    double relativeRmse = 0;
 };
 struct CompressReport {
     int components = 0;
@@ -21,9 +32,12 @@ struct CompressReport {
     double rmse = 0;
     double irradianceRelativeRmse = 0;  ///< of coefficients in the metric of irradiance, over valid points
     double seconds = 0;
-    size_t bytes = 0;  ///< of pca.exr
+    size_t bytes = 0;                     ///< of pca.exr
+    std::vector<RelitError> relitErrors;  ///< where a target was given
+    bool upToDate = false;                ///< the bundle had just that already: nothing was written
 };
-/// PCA of visibility.exr over valid points, weights for all points; writes pca.exr.
+/// PCA of visibility.exr over valid points, weights for all points; writes pca.exr. Does nothing where
+/// pca.exr is current and was made with the same settings.
 /// @throws UsageError  components above n² (names the limit), or no such kind of weights   @throws
 /// InputError, OutputError
 CompressReport runCompress(const CompressSettings& settings);
@@ -34,12 +48,16 @@ struct TabulateSettings {
     std::string kind = "triple-product";    ///< or "light-cosine"
     std::string layout = "cube";
     int size = 32;
+    bool force = false;  ///< also tables that the bundle has just so already
 };
 struct TabulateRow {
     std::string environment, file;
+    std::string environmentHash;  ///< of its pixels
     size_t bytes = 0;
     double seconds = 0;
+    bool upToDate = false;  ///< the bundle had just that already
 };
+/// Writes a table for each environment; leaves those that are current and were made with the same settings.
 std::vector<TabulateRow> runTabulate(const TabulateSettings& settings);
 
 /// File name of a table within its bundle: tables/ENV.KIND.LAYOUT.exr (characters outside [A-Za-z0-9_-]

@@ -21,6 +21,7 @@ void runTabulateCommand(int argc, char** argv) {
                 "light x cosine x component (needs prt compress), or light x cosine");
     line.choice("--layout", settings.layout, {"cube"}, "how the sphere of normals is laid out");
     line.integer("--size", settings.size, 1, 1024, "texels along an edge of a cube face");
+    line.flag("--force", settings.force, "also tables that the bundle has just so already");
     if (!line.parse(argc, argv)) return;
 
     const std::vector<TabulateRow> rows = runTabulate(settings);
@@ -28,12 +29,15 @@ void runTabulateCommand(int argc, char** argv) {
     std::vector<Report> reportRows;
     for (const TabulateRow& row : rows) {
         if (line.common().json != "-")
-            fmt::print("{}: {} ({:.1f} kB, {:.3f} s)\n", row.environment, row.file, double(row.bytes) * 1e-3,
-                       row.seconds);
+            fmt::print("{}: {} ({})\n", row.environment, row.file,
+                       row.upToDate
+                           ? "current, nothing to do"
+                           : fmt::format("{:.1f} kB, {:.3f} s", double(row.bytes) * 1e-3, row.seconds));
         Report one;
         one.set("environment", row.environment)
             .set("file", row.file)
             .set("bytes", uint64_t(row.bytes))
+            .set("up_to_date", row.upToDate)
             .set("seconds", row.seconds);
         reportRows.push_back(std::move(one));
     }

@@ -7,14 +7,17 @@
 #include <random>
 #include <sstream>
 
+#include "compress/choose_components.h"
 #include "compress/irradiance_weights.h"
 #include "compress/pca.h"
+#include "compress/relit_error.h"
 #include "compress/tables/normal_tables.h"
 #include "precompute/base/error.h"
 #include "precompute/io/bundle.h"
 #include "precompute/io/environment_file.h"
 #include "precompute/io/table_file.h"
 #include "precompute/io/visibility_file.h"
+#include "precompute/math/directions.h"
 #include "precompute/math/sh.h"
 
 namespace prt {
@@ -169,8 +172,125 @@ TEST_F(Jobs, CompressGivesTheSameBytesAgain) {
     writeBundle(testVisibility(3, 2));
     runCompress({bundle_, 4});
     const auto first = contents().at("pca.exr");
-    runCompress({bundle_, 4});
+    CompressSettings again{bundle_, 4};
+    again.force = true;
+    EXPECT_FALSE(runCompress(again).upToDate);
     EXPECT_EQ(contents().at("pca.exr"), first);
+}
+
+TEST_F(Jobs, CompressDoesNothingWhereNothingChanged) {
+    writeBundle(testVisibility(3, 2));
+    const CompressReport first = runCompress({bundle_, 4});
+    EXPECT_FALSE(first.upToDate);
+    const auto before = contents();
+    const CompressReport second = runCompress({bundle_, 4});
+    EXPECT_TRUE(second.upToDate);
+    EXPECT_EQ(contents(), before);
+    EXPECT_EQ(second.components, 4);
+    EXPECT_EQ(second.points, first.points);
+    EXPECT_EQ(second.bytes, first.bytes);
+    EXPECT_DOUBLE_EQ(second.relativeRmse, first.relativeRmse);
+    EXPECT_DOUBLE_EQ(second.irradianceRelativeRmse, first.irradianceRelativeRmse);
+    // Other settings, another visibility, a damaged file: made again.
+    EXPECT_FALSE(runCompress({bundle_, 5}).upToDate);
+    EXPECT_FALSE(runCompress({bundle_, 5, "plain"}).upToDate);
+    EXPECT_TRUE(runCompress({bundle_, 5, "plain"}).upToDate);
+    writeBundle(testVisibility(3, 7));
+    EXPECT_FALSE(runCompress({bundle_, 5, "plain"}).upToDate);
+    {
+        std::fstream file(bundle_ + "/pca.exr", std::ios::in | std::ios::out | std::ios::binary);
+        file.seekp(-4, std::ios::end);
+        file.write("oops", 4);
+    }
+    EXPECT_FALSE(runCompress({bundle_, 5, "plain"}).upToDate);
+    EXPECT_EQ(Bundle::open(bundle_).staleReason("pca.exr", true), "");
+}
+
+TEST_F(Jobs, TargetErrorTakesAsFewVectorsAsReachIt) {
+    writeBundle(testVisibility(4, 12, 40, 50));
+    const std::vector<std::string> environments = {"sky:clear", "sky:uniform"};
+    int before = 17;
+    for (const double target : {0.001, 0.05, 0.2, 0.6}) {
+        CompressSettings settings{bundle_};
+        settings.targetError = target;
+        settings.environments = environments;
+        const CompressReport report = runCompress(settings);
+        EXPECT_LE(report.components, before);
+        before = report.components;
+        ASSERT_EQ(report.relitErrors.size(), 2u);
+        double largest = 0;
+        for (const RelitError& error : report.relitErrors) largest = std::max(largest, error.relativeRmse);
+        EXPECT_LE(largest, report.components == 16 ? 1e-3 : target);
+        EXPECT_EQ(readPcaFile(bundle_ + "/pca.exr").components, report.components);
+        EXPECT_TRUE(runCompress(settings).upToDate);
+        if (report.components == 1) continue;
+        // One vector fewer does not reach it.
+        const VisibilityMap map = readVisibilityFile(bundle_ + "/visibility.exr");
+        std::vector<uint8_t> valid;
+        for (const Validity validity : map.validity) valid.push_back(validity == Validity::Valid);
+        std::vector<EnvironmentSh> light;
+        for (const std::string& name : environments)
+            light.push_back(projectEnvironment(loadEnvironment(name).view(), tableEnvironmentShOrder(4)));
+        const CompressedVisibility fewer =
+            compressVisibility(map.coefficients, valid, map.normals, 4, map.projection, report.components - 1,
+                               WeightsFit::Irradiance);
+        const std::vector<double> errors = relitErrors(fewer, map.coefficients, valid, map.normals, 4, light);
+        EXPECT_GT(std::max(errors[0], errors[1]), target);
+    }
+    EXPECT_LT(before, 16);
+    for (const double target : {-1.0, 2.0, 1e-9})
+        expectRefused<UsageError>(
+            [&] {
+                CompressSettings settings{bundle_};
+                settings.targetError = target;
+                runCompress(settings);
+            },
+            {"--target-error"});
+}
+
+// Light times cosine times visibility by the definition, one normal and point at a time.
+TEST(RelitProbe, IsTheErrorOfIrradiance) {
+    std::mt19937 random(5);
+    std::normal_distribution<float> gauss;
+    constexpr size_t kPoints = 9, kColumns = 9;
+    std::vector<Vec3f> normals;
+    std::vector<float> rows, others;
+    for (size_t i = 0; i < kPoints; ++i)
+        normals.push_back(Vec3f(gauss(random), gauss(random), gauss(random)).normalized());
+    normals[4] = Vec3f::Zero();
+    const std::vector<uint8_t> use = {1, 1, 0, 1, 1, 1, 1, 1, 1};
+    const EnvironmentSh light =
+        projectEnvironment(loadEnvironment("sky:clear").view(), tableEnvironmentShOrder(3));
+    const RelitProbe probe(3, normals, use, std::span(&light, 1));
+    EXPECT_EQ(probe.points(), (std::vector<uint32_t>{0, 1, 3, 5, 6, 7, 8}));
+    for (size_t k = 0; k < probe.points().size() * kColumns; ++k) {
+        rows.push_back(gauss(random));
+        others.push_back(rows.back() + 0.1f * gauss(random));
+    }
+    double error = 0, square = 0;
+    for (size_t p = 0; p < probe.points().size(); ++p) {
+        const Vec3f n = normals[probe.points()[p]];
+        const Frame frame = frameAround(n);
+        const float c = float(std::cos(20 * M_PI / 180)), s = float(std::sin(20 * M_PI / 180));
+        for (const Vec3f& shading :
+             {n, Vec3f(c * n + s * frame.tangent), Vec3f(c * n - s * frame.tangent),
+              Vec3f(c * n + s * frame.bitangent), Vec3f(c * n - s * frame.bitangent)}) {
+            const std::vector<float> r = evalLightCosine(light, 3, std::span(&shading, 1));
+            for (size_t colour = 0; colour < 3; ++colour) {
+                double a = 0, b = 0;
+                for (size_t k = 0; k < kColumns; ++k) {
+                    a += double(r[colour * kColumns + k]) * double(rows[p * kColumns + k]);
+                    b += double(r[colour * kColumns + k]) * double(others[p * kColumns + k]);
+                }
+                error += (b - a) * (b - a);
+                square += a * a;
+            }
+        }
+    }
+    const std::vector<double> errors = probe.relativeRmse(rows, others);
+    ASSERT_EQ(errors.size(), 1u);
+    EXPECT_NEAR(errors[0], std::sqrt(error / square), 1e-6);
+    EXPECT_EQ(probe.relativeRmse(rows, rows)[0], 0);
 }
 
 TEST_F(Jobs, CompressPerVertex) {
