@@ -23,8 +23,7 @@ namespace prt {
 namespace {
 
 using detail::kLanes;
-using detail::Lanes;
-using detail::lanesAt;
+using detail::MirrorRun;
 using detail::Quad;
 using detail::quadAt;
 
@@ -41,65 +40,125 @@ int oddAxes(int band, int m) {
     return int(oddX) + 2 * int(oddY) + 4 * ((band + order) % 2);
 }
 
-/// Sums of one column: sums[p][lane] = Σ_{rows of class p} matrix[row] cosines[row][lane].
+/// Sums of two columns at a time: sums[p][lane] = Σ_{rows of class p} matrix[row] cosines[row][lane]. Vectors
+/// of four, which every machine and compiler keeps in registers.
 template <int kClasses>
-[[gnu::always_inline]] inline void sumClasses(const float* matrix, const float* cosines,
-                                              const uint32_t* classBegin, float* sums) {
-    for (int p = 0; p < kClasses; ++p) {
-        Lanes a{}, b{}, c{}, d{};
-        for (uint32_t r = classBegin[p]; r < classBegin[p + 1]; ++r) {
-            const float factor = matrix[r];
-            const float* row = cosines + r * kBlock;
-            a += factor * lanesAt(row).value;
-            b += factor * lanesAt(row + kLanes).value;
-            c += factor * lanesAt(row + 2 * kLanes).value;
-            d += factor * lanesAt(row + 3 * kLanes).value;
+[[gnu::always_inline]] inline void sumClasses(const float* first, const float* second, const float* cosines,
+                                              const uint32_t* classBegin, float* sumsFirst,
+                                              float* sumsSecond) {
+    constexpr size_t kWidth = 4, kStep = 4 * kWidth;
+    for (size_t p = 0; p < kClasses; ++p)
+        for (size_t lane = 0; lane < kBlock; lane += kStep) {
+            Quad a[4] = {}, b[4] = {};
+            for (uint32_t r = classBegin[p]; r < classBegin[p + 1]; ++r) {
+                const float* row = cosines + r * kBlock + lane;
+                for (size_t q = 0; q < 4; ++q) {
+                    const Quad h = quadAt(row + q * kWidth).value;
+                    a[q] += first[r] * h;
+                    b[q] += second[r] * h;
+                }
+            }
+            for (size_t q = 0; q < 4; ++q) {
+                quadAt(sumsFirst + p * kBlock + lane + q * kWidth) = a[q];
+                quadAt(sumsSecond + p * kBlock + lane + q * kWidth) = b[q];
+            }
         }
-        lanesAt(sums) = a;
-        lanesAt(sums + kLanes) = b;
-        lanesAt(sums + 2 * kLanes) = c;
-        lanesAt(sums + 3 * kLanes) = d;
-        sums += kBlock;
-    }
 }
 
 /// From sums of classes to values at mirror images: v_σ = Σ_p ±s_p, minus where σ mirrors an odd number of
 /// the odd axes of p.
 template <int kClasses>
 [[gnu::always_inline]] inline void combineClasses(float* sums) {
-    for (size_t lane = 0; lane < kBlock; lane += kLanes) {
-        Lanes v[kClasses];
-        for (size_t p = 0; p < kClasses; ++p) v[p] = lanesAt(sums + p * kBlock + lane).value;
+    for (size_t lane = 0; lane < kBlock; lane += 4) {
+        Quad v[kClasses];
+        for (size_t p = 0; p < kClasses; ++p) v[p] = quadAt(sums + p * kBlock + lane).value;
         for (size_t bit = 1; bit < kClasses; bit *= 2)
             for (size_t p = 0; p < kClasses; ++p) {
                 if (p & bit) continue;
-                const Lanes even = v[p], odd = v[p + bit];
+                const Quad even = v[p], odd = v[p + bit];
                 v[p] = even + odd;
                 v[p + bit] = even - odd;
             }
-        for (size_t p = 0; p < kClasses; ++p) lanesAt(sums + p * kBlock + lane) = v[p];
+        for (size_t p = 0; p < kClasses; ++p) quadAt(sums + p * kBlock + lane) = v[p];
     }
 }
 
-/// Sums and values of one column over one block, for 1, 4 or 8 classes.
-PRT_TARGET_CLONES void evaluateBlock(int classes, const float* matrix, const float* cosines,
-                                     const uint32_t* classBegin, float* values) {
-    if (classes == 8) {
-        sumClasses<8>(matrix, cosines, classBegin, values);
-        combineClasses<8>(values);
+/// Copies `length` floats, the other way round where asked for.
+[[gnu::always_inline]] inline void copyRun(const float* from, float* to, size_t length, bool reversed) {
+    if (reversed) {
+        PRT_INDEPENDENT_LOOP
+        for (size_t i = 0; i < length; ++i) to[i] = from[length - 1 - i];
     } else {
-        sumClasses<4>(matrix, cosines, classBegin, values);
-        combineClasses<4>(values);
+        PRT_INDEPENDENT_LOOP
+        for (size_t i = 0; i < length; ++i) to[i] = from[i];
     }
+}
+
+/// Writes the values of a run to where its mirror images lie.
+/// @param values  [kImages][kBlock]
+template <int kImages>
+[[gnu::always_inline]] inline void placeRun(const MirrorRun& run, const float* values, float* table) {
+    for (size_t sigma = 0; sigma < kImages; ++sigma) {
+        const float* from = values + sigma * kBlock + run.lane;
+        float* to = table + run.texel[sigma];
+        const bool reversed = run.reversed >> sigma & 1;
+        // Lengths of common sizes become straight-line code.
+        switch (run.length) {
+            case 16:
+                copyRun(from, to, 16, reversed);
+                break;
+            case 8:
+                copyRun(from, to, 8, reversed);
+                break;
+            case 4:
+                copyRun(from, to, 4, reversed);
+                break;
+            default:
+                copyRun(from, to, run.length, reversed);
+        }
+    }
+}
+
+/// All columns over one block.
+template <int kImages>
+[[gnu::always_inline]] inline void evaluateColumns(const float* matrix, size_t stride, size_t columns,
+                                                   const float* cosines, const uint32_t* classBegin,
+                                                   const MirrorRun* runs, const MirrorRun* runsEnd,
+                                                   float* table, size_t texels) {
+    alignas(64) float values[2][kImages * kBlock];
+    for (size_t column = 0; column < columns; column += 2) {
+        const size_t count = std::min(size_t(2), columns - column);
+        sumClasses<kImages>(matrix, matrix + (count - 1) * stride, cosines, classBegin, values[0], values[1]);
+        for (size_t c = 0; c < count; ++c) {
+            combineClasses<kImages>(values[c]);
+            for (const MirrorRun* run = runs; run < runsEnd; ++run)
+                placeRun<kImages>(*run, values[c], table + c * texels);
+        }
+        matrix += count * stride;
+        table += count * texels;
+    }
+}
+
+/// All columns over one block, for 4 or 8 mirror images.
+/// @param matrix   [columns][stride]   @param cosines  [rows][kBlock]
+/// @param table    [columns][texels]
+PRT_TARGET_CLONES void evaluateBlock(int images, const float* matrix, size_t stride, size_t columns,
+                                     const float* cosines, const uint32_t* classBegin, const MirrorRun* runs,
+                                     const MirrorRun* runsEnd, float* table, size_t texels) {
+    if (images == 8)
+        evaluateColumns<8>(matrix, stride, columns, cosines, classBegin, runs, runsEnd, table, texels);
+    else
+        evaluateColumns<4>(matrix, stride, columns, cosines, classBegin, runs, runsEnd, table, texels);
 }
 
 /// out = Σ_i factors[i] rows[i], rows of `stride` floats, a multiple of 16.
 PRT_TARGET_CLONES void combineRows(const float* factors, const float* rows, size_t count, size_t stride,
                                    float* out) {
     for (size_t k = 0; k < stride; k += kLanes) {
-        Lanes sum{};
-        for (size_t i = 0; i < count; ++i) sum += factors[i] * lanesAt(rows + i * stride + k).value;
-        lanesAt(out + k) = sum;
+        Quad sum[4] = {};
+        for (size_t i = 0; i < count; ++i)
+            for (size_t q = 0; q < 4; ++q) sum[q] += factors[i] * quadAt(rows + i * stride + k + 4 * q).value;
+        for (size_t q = 0; q < 4; ++q) quadAt(out + k + 4 * q) = sum[q];
     }
 }
 
@@ -156,7 +215,7 @@ void LightTableBuilder::planTexels() {
             reversed |= uint8_t((step < 0) << sigma);
         }
         if (joins) {
-            Run& run = runs_.back();
+            MirrorRun& run = runs_.back();
             joins = run.length < kLanes && (run.length == 1 || run.reversed == reversed);
             if (joins) {
                 run.reversed = reversed;
@@ -166,7 +225,7 @@ void LightTableBuilder::planTexels() {
             }
         }
         if (!joins) {
-            Run run{uint32_t(lane), 1, {}, 0};
+            MirrorRun run{uint32_t(lane), 1, {}, 0};
             std::copy(image.begin(), image.end(), run.texel.begin());
             runs_.push_back(run);
         }
@@ -223,27 +282,10 @@ void LightTableBuilder::fillProduct(const EnvironmentSh& environment) {
 }
 
 void LightTableBuilder::evaluate(const float* matrix, size_t columns, float* out) const {
-    const int images = 1 << mirrors_;
-    const size_t texels = texelCount();
-    alignas(64) float values[8 * kBlock];
-    for (size_t block = 0; block + 1 < blockRuns_.size(); ++block) {
-        const float* cosines = &cosines_[block * rows_.size() * kBlock];
-        for (size_t column = 0; column < columns; ++column) {
-            evaluateBlock(images, matrix + column * paddedRows_, cosines, classBegin_.data(), values);
-            float* table = out + column * texels;
-            for (uint32_t k = blockRuns_[block]; k < blockRuns_[block + 1]; ++k) {
-                const Run& run = runs_[k];
-                for (int sigma = 0; sigma < images; ++sigma) {
-                    const float* from = values + size_t(sigma) * kBlock + run.lane;
-                    float* to = table + run.texel[size_t(sigma)];
-                    if (run.reversed >> sigma & 1)
-                        for (uint32_t i = 0; i < run.length; ++i) to[run.length - 1 - i] = from[i];
-                    else
-                        for (uint32_t i = 0; i < run.length; ++i) to[i] = from[i];
-                }
-            }
-        }
-    }
+    for (size_t block = 0; block + 1 < blockRuns_.size(); ++block)
+        evaluateBlock(1 << mirrors_, matrix, paddedRows_, columns, &cosines_[block * rows_.size() * kBlock],
+                      classBegin_.data(), runs_.data() + blockRuns_[block],
+                      runs_.data() + blockRuns_[block + 1], out, texelCount());
 }
 
 void LightTableBuilder::buildLightCosine(const EnvironmentSh& environment, std::span<float> out) {

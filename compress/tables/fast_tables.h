@@ -16,6 +16,18 @@ namespace prt {
 /// @source [IwanickiSloan2012, Sec. 3.3]
 inline constexpr int kPaperCosineBands = 3;
 
+namespace detail {
+
+/// Texels of one octant that every mirror image keeps in a row, forwards or backwards.
+struct MirrorRun {
+    uint32_t lane;  ///< of the first, within its block
+    uint32_t length;
+    std::array<uint32_t, 8> texel;  ///< of each mirror image: where its lowest texel lies
+    uint8_t reversed;               ///< bit σ: mirror image σ runs backwards
+};
+
+}  // namespace detail
+
 /// Makes tables of one layout, visibility order and number of cosine bands from projected environments, on
 /// the calling thread. What does not depend on the light is computed once; the other functions allocate
 /// nothing. They write to the object: one builder per thread.
@@ -55,14 +67,6 @@ class LightTableBuilder {
         uint32_t light;
         float tripling;
     };
-    /// Texels of the fundamental part that every mirror image keeps in a row.
-    struct Run {
-        uint32_t lane;  ///< of the first, within its block
-        uint32_t length;
-        std::array<uint32_t, 8> texel;  ///< of each mirror image: where its lowest texel lies
-        uint8_t reversed;               ///< bit σ: mirror image σ runs backwards
-    };
-
     void planTexels();
     void planRows();
     void planProduct();
@@ -77,7 +81,7 @@ class LightTableBuilder {
     std::array<uint32_t, 9> classBegin_{};  ///< rows of parity class p begin here
     size_t paddedRows_ = 0;                 ///< floats from one column of a matrix to the next
     std::vector<float> cosines_;            ///< [blocks][rows][kBlock]
-    std::vector<Run> runs_;
+    std::vector<detail::MirrorRun> runs_;
     std::vector<uint32_t> blockRuns_;  ///< [blocks + 1] where runs of a block begin
     std::vector<Term> terms_;
     std::vector<uint32_t> termBegin_;  ///< [n²·rows + 1] by (i, row)
