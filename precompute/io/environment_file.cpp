@@ -1,5 +1,5 @@
 // Environments from files and formulas, and what is known of their suns.
-// Sources: OpenEXR ImfEnvmap.h (orientation), Radiance RGBE (rgbe.cpp), CIE sky (procedural_sky.cpp).
+// Sources: OpenEXR ImfEnvmap.h (orientation), Radiance RGBE (rgbe.cpp), skies (procedural_sky.cpp).
 #include "precompute/io/environment_file.h"
 
 #include <fmt/format.h>
@@ -129,10 +129,11 @@ std::string lowerExtension(const std::filesystem::path& path) {
     return extension;
 }
 
-std::string skyNameList() {
-    std::string list;
-    for (const std::string& name : proceduralSkyNames()) list += (list.empty() ? "sky:" : ", sky:") + name;
-    return list;
+/// A sky's name and parameters as part of a file's name: `preetham-turbidity-3`.
+std::string fileName(std::string request) {
+    for (char& c : request)
+        if (c == '?' || c == '&' || c == '=' || c == ',') c = '-';
+    return request;
 }
 
 }  // namespace
@@ -145,11 +146,8 @@ Environment loadEnvironment(const std::string& pathOrSky, const EnvironmentOptio
     environment.source = pathOrSky;
     Picture picture{{}, EnvironmentLayout::LatLong};
     if (pathOrSky.starts_with("sky:")) {
-        environment.name = pathOrSky.substr(4);
-        const auto& names = proceduralSkyNames();
-        if (std::find(names.begin(), names.end(), environment.name) == names.end())
-            throw InputError(pathOrSky, "unknown sky", "use one of " + skyNameList());
-        environment.image = makeProceduralSky(environment.name);
+        environment.image = makeProceduralSky(pathOrSky.substr(4));
+        environment.name = fileName(pathOrSky.substr(4));
         clampValues(environment);
     } else {
         const std::filesystem::path path(pathOrSky);
@@ -163,7 +161,8 @@ Environment loadEnvironment(const std::string& pathOrSky, const EnvironmentOptio
                                         picture.image.height, pathOrSky);
         } else {
             throw InputError(pathOrSky, "is not an environment",
-                             "give an .exr or .hdr file, or " + skyNameList());
+                             fmt::format("give an .exr or .hdr file, or sky:{}",
+                                         fmt::join(proceduralSkyNames(), ", sky:")));
         }
         environment.image = std::move(picture.image);
         clampValues(environment);

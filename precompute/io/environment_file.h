@@ -11,9 +11,9 @@ namespace prt {
 
 /// Distant light as a latitude-longitude image (orientation: math/environment.h).
 struct Environment {
-    std::string name;             ///< file name without extension, or the sky's name
-    std::string source;           ///< the argument it was loaded from
-    FloatImage image;             ///< 3 channels, linear radiance, all finite and >= 0
+    std::string name;    ///< file name without extension, or the sky's with its parameters, fit for a file
+    std::string source;  ///< the argument it was loaded from
+    FloatImage image;    ///< 3 channels, linear radiance, all finite and >= 0
     std::string contentHash;      ///< xxh3-128 of the pixels, hexadecimal
     size_t clampedNegative = 0;   ///< negative values set to 0
     size_t clampedNotFinite = 0;  ///< NaN or infinite values set to 0
