@@ -14,6 +14,8 @@ namespace prt {
 namespace {
 
 constexpr size_t kBlockPoints = 2048;
+// Irradiance at geometric and tilted normals gains 1 to 4 % from the second and third, nothing from more.
+constexpr int kRefinements = 3;
 
 std::vector<float> cutAtHorizons(std::span<const float> rows, std::span<const Vec3f> normals, int shOrder,
                                  const IrradianceWeight& weight) {
@@ -53,9 +55,12 @@ CompressedVisibility compressVisibility(std::span<const float> rows, std::span<c
     const IrradianceWeight& weight = projection.weight;
     result.weights = projectPcaForIrradiance(result.pca, rows, normals, shOrder, weight);
     if (projection.kind == ProjectionKind::Plain) return result;
-    result.pca =
-        refineForIrradiance(result.pca, rows, plainRows, result.weights, normals, use, shOrder, weight);
-    result.weights = projectPcaForIrradiance(result.pca, rows, normals, shOrder, weight);
+    for (int round = 0; round < kRefinements; ++round) {
+        throwIfInterrupted();
+        result.pca =
+            refineForIrradiance(result.pca, rows, plainRows, result.weights, normals, use, shOrder, weight);
+        result.weights = projectPcaForIrradiance(result.pca, rows, normals, shOrder, weight);
+    }
     return result;
 }
 

@@ -24,7 +24,7 @@ struct CompressedVisibility {
 ///
 /// Coefficients that were projected for irradiance are not compared with each other as they are: far below
 /// their horizons, where irradiance does not look, they follow no common pattern, and a basis of them falls
-/// apart. The basis comes from the expansions cut at their horizons, refined by one step of alternating least
+/// apart. The basis comes from the expansions cut at their horizons, refined by steps of alternating least
 /// squares (refine_basis.h); weights fitted for irradiance are those
 /// of the full ones, each in the metric of its own normal; plain weights are those of the cut ones.
 /// @param rows        [N×n²]   @param use  [N] non-zero for rows that count, empty = all

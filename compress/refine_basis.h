@@ -15,7 +15,7 @@ inline constexpr int kMostRefinedValues = 2048;
 
 /// One step of alternating least squares: the mean and basis that minimise Σ_p e_pᵀ A(n_p) e_p,
 /// e_p = row_p − mean − Σ_m w_pm basis_m, for the weights that `pca` has; from a sample of the rows in use.
-/// More steps lower this sum further, but errors under real light rise again for tilted shading normals.
+/// More than three steps lower this sum further, but no longer errors under real light.
 /// @param pca        basis orthonormal
 /// @param rows       [N×n²]   @param plainRows  [N×n²] what variances are of
 /// @param weights    [N×M] of pca for rows, as projectPcaForIrradiance finds them

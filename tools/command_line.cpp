@@ -1,10 +1,12 @@
 #include "tools/command_line.h"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <charconv>
 #include <cmath>
+#include <filesystem>
 #include <functional>
 #include <iostream>
 
@@ -71,6 +73,9 @@ void CommandLine::text(const std::string& names, std::string& value, const std::
     const std::string text = value.empty() ? help : fmt::format("{} [default {}]", help, value);
     CLI::Option* option = state_->app.add_option(names, value, text)->type_name(type);
     if (required) option->required();
+    state_->checks.push_back([option, &value, name = State::longName(names)] {
+        if (option->count() > 0 && value.empty()) throw UsageError(name, "its value is empty", "see --help");
+    });
 }
 
 void CommandLine::textList(const std::string& names, std::vector<std::string>& values,
@@ -96,6 +101,23 @@ void CommandLine::flag(const std::string& names, bool& value, const std::string&
     state_->app.add_flag(names, value, help);
 }
 
+namespace {
+
+// Before hours of work rather than after them.
+void checkWritable(const std::string& json) {
+    if (json.empty() || json == "-") return;
+    const std::filesystem::path path(json);
+    const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
+    std::error_code ignored;
+    if (!std::filesystem::is_directory(folder, ignored))
+        throw OutputError(json, fmt::format("there is no folder {}", folder.string()), "make it first");
+    if (::access(folder.c_str(), W_OK) != 0)
+        throw OutputError(json, fmt::format("the folder {} cannot be written", folder.string()));
+    if (std::filesystem::is_directory(path, ignored)) throw OutputError(json, "is a folder", "name a file");
+}
+
+}  // namespace
+
 bool CommandLine::parse(int argc, char** argv) {
     CommonOptions& common = state_->common;
     text("--json", common.json, "FILE|-", "write results as JSON to a file, or to standard output (-)");
@@ -110,6 +132,7 @@ bool CommandLine::parse(int argc, char** argv) {
         throw UsageError("", error.what(), "see --help");
     }
     for (const auto& check : state_->checks) check();
+    checkWritable(common.json);
     setThreadCount(common.threads);
     setQuiet(common.quiet);
     return true;

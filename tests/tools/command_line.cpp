@@ -58,5 +58,23 @@ TEST(RelightCamera, LooksFromTheAskedSide) {
     EXPECT_THROW(arguments.camera(bounds), UsageError);
 }
 
+TEST(CommandLine, WhatCannotBeWrittenIsFoundBeforeTheWork) {
+    const auto parse = [](std::vector<std::string> arguments) {
+        std::string output;
+        CommandLine line("prt test", "", "");
+        line.text("-o,--output", output, "FILE", "where to");
+        arguments.insert(arguments.begin(), "test");
+        std::vector<char*> pointers;
+        for (std::string& argument : arguments) pointers.push_back(argument.data());
+        line.parse(int(pointers.size()), pointers.data());
+    };
+    EXPECT_NO_THROW(parse({"--json", "-"}));
+    EXPECT_NO_THROW(parse({"--json", "new.json"}));
+    EXPECT_THROW(parse({"--json", "/no/such/folder/new.json"}), OutputError);
+    EXPECT_THROW(parse({"--json", "/tmp"}), OutputError);
+    EXPECT_THROW(parse({"-o", ""}), UsageError);
+    EXPECT_NO_THROW(parse({"-o", "x"}));
+}
+
 }  // namespace
 }  // namespace prt::tools
