@@ -30,6 +30,8 @@ const std::vector<MeasureCommand> kMeasureCommands = {
      runMeasureProjection},
     {"sampling", "error of visibility over rays: sets of directions, uniform and adaptive bakes",
      runMeasureSampling},
+    {"tables", "Iwanicki & Sloan Secs. 3.2 and 3.3: error, size and time of tables over the normal",
+     runMeasureTables},
 };
 
 std::string usage() {

@@ -27,9 +27,11 @@ using detail::MirrorRun;
 using detail::Quad;
 using detail::quadAt;
 
-// Normals that are worked on together: their cosines stay in the first-level cache over all columns, their
-// sums in registers.
+// Normals that are worked on together: their cosines stay in the first-level cache over several columns.
 constexpr size_t kBlock = 4 * kLanes;
+// Columns that go through all blocks together: what is written to meanwhile stays in the second-level cache
+// (all columns of 64² texels at once took 1.5 to 2.5 times as long).
+constexpr size_t kColumns = 4;
 
 size_t roundUp(size_t count, size_t multiple) { return (count + multiple - 1) / multiple * multiple; }
 
@@ -282,10 +284,12 @@ void LightTableBuilder::fillProduct(const EnvironmentSh& environment) {
 }
 
 void LightTableBuilder::evaluate(const float* matrix, size_t columns, float* out) const {
-    for (size_t block = 0; block + 1 < blockRuns_.size(); ++block)
-        evaluateBlock(1 << mirrors_, matrix, paddedRows_, columns, &cosines_[block * rows_.size() * kBlock],
-                      classBegin_.data(), runs_.data() + blockRuns_[block],
-                      runs_.data() + blockRuns_[block + 1], out, texelCount());
+    for (size_t first = 0; first < columns; first += kColumns)
+        for (size_t block = 0; block + 1 < blockRuns_.size(); ++block)
+            evaluateBlock(1 << mirrors_, matrix + first * paddedRows_, paddedRows_,
+                          std::min(kColumns, columns - first), &cosines_[block * rows_.size() * kBlock],
+                          classBegin_.data(), runs_.data() + blockRuns_[block],
+                          runs_.data() + blockRuns_[block + 1], out + first * texelCount(), texelCount());
 }
 
 void LightTableBuilder::buildLightCosine(const EnvironmentSh& environment, std::span<float> out) {

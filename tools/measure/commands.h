@@ -10,5 +10,6 @@ void runMeasureRotation(int argc, char** argv);
 void runMeasureProduct(int argc, char** argv);
 void runMeasureProjection(int argc, char** argv);
 void runMeasureSampling(int argc, char** argv);
+void runMeasureTables(int argc, char** argv);
 
 }  // namespace prt::tools
