@@ -268,9 +268,9 @@ TEST(EnvironmentLayout, ResamplingKeepsTheFlux) {
         // Rough: every texel its own, of a wide range.
         for (float& value : rgb) value = std::pow(std::uniform_real_distribution<float>(0, 2)(random), 6.0f);
         const auto resampled = [&] {
-            const int rows = latLongHeightForLayout(layout, width, height);
+            const int rows = latLongHeightForLayout(layout, map.width(), map.height());
             return flux(EnvironmentLayoutMap(EnvironmentLayout::LatLong, 2 * rows, rows),
-                        latLongFromLayout(layout, width, height, rgb));
+                        latLongFromLayout(layout, map.width(), map.height(), rgb));
         };
         EXPECT_NEAR(resampled() / flux(map, rgb), 1, 5e-3);
         // One bright texel, wherever it is not on an edge that it shares.
