@@ -38,9 +38,8 @@ struct SunExtraction {
 /// Finds the brightest disc: the texels around the brightest one that exceed their surroundings (median of a
 /// ring of 1 to 1.6 times maxRadiusRad) by at least a twentieth of what that one does, and their neighbours.
 /// What they have above the surroundings moves to the disc, in each colour so that Σ L ω ΔΩ stays: every
-/// surface that the whole disc shines on receives what it did, but for the rounding of `rest` and for the
-/// colours' different middles (measured on 18 photographed environments and made ones: to 0.1 %; of surfaces
-/// with the disc on their horizon, to 1 %).
+/// surface that the whole disc shines on receives what it did (tests ask for 1 %; measured on made suns of 1
+/// to 4°: 0.12 % at most over 48 normals, eight of them with the disc on their horizon).
 /// @param image  every value finite and ≥ 0
 /// @return       sun.found false where there is none: nothing bright enough, too wide or not round
 SunExtraction extractSun(const LatLongView& image, const SunOptions& options = {});
