@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cstring>
 #include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -33,14 +34,34 @@ constexpr int kMaxTableSize = 1024;
 
 constexpr const char* kIrradiance = "irradiance";
 
+// As a shell takes it for one word.
+std::string shellWord(const std::string& text) {
+    const auto isPlain = [](char c) {
+        return std::isalnum(static_cast<unsigned char>(c)) || std::strchr("_-./:,=+%@", c) != nullptr;
+    };
+    if (!text.empty() && std::all_of(text.begin(), text.end(), isPlain)) return text;
+    std::string word = "'";
+    for (const char c : text) word += c == '\'' ? std::string("'\\''") : std::string(1, c);
+    return word + "'";
+}
+
+// What a command that renews a file says of its environments.
+std::string environmentWords(const EnvironmentOptions& options) {
+    std::string words;
+    if (options.layout != EnvironmentOptions{}.layout) words += " --env-layout " + options.layout;
+    if (options.mirrored) words += " --env-mirrored";
+    return words;
+}
+
 std::string compressCommand(const CompressSettings& settings) {
     if (settings.targetError == 0)
         return fmt::format("prt compress {} --components {} --weights {}", settings.bundlePath,
                            settings.components, settings.weights);
     std::string command = fmt::format("prt compress {} --target-error {:g} --weights {}", settings.bundlePath,
                                       settings.targetError, settings.weights);
-    for (const std::string& environment : settings.environments) command += " --env " + environment;
-    return command;
+    for (const std::string& environment : settings.environments)
+        command += " --env " + shellWord(environment);
+    return command + environmentWords(settings.environmentOptions);
 }
 
 std::string hashOf(const Bundle& bundle, const std::string& name) { return bundle.find(name)->xxh3; }
@@ -104,7 +125,7 @@ struct TargetEnvironments {
             for (const char* sky : {"sky:clear", "sky:overcast", "sky:sunset", "sky:uniform"})
                 sources.emplace_back(sky);
         for (const std::string& source : sources) {
-            loaded.push_back(loadEnvironment(source));
+            loaded.push_back(loadEnvironment(source, settings.environmentOptions));
             names.push_back(loaded.back().name);
             hashes.push_back(loaded.back().contentHash);
         }
@@ -345,7 +366,7 @@ std::vector<TabulateRow> runTabulate(const TabulateSettings& settings) {
     Progress progress("tabulating", settings.environments.size(), "environments");
     for (const std::string& source : settings.environments) {
         const Stopwatch watch;
-        const Environment environment = loadEnvironment(source);
+        const Environment environment = loadEnvironment(source, settings.environmentOptions);
         TabulateRow row;
         row.environment = environment.name;
         row.file = tableFileName(environment.name, settings.kind, settings.layout);
@@ -365,8 +386,9 @@ std::vector<TabulateRow> runTabulate(const TabulateSettings& settings) {
         const NormalTable table = makeTable(environment, target, settings.size);
         const std::filesystem::path staged = transaction.stage(
             row.file, target.madeFrom,
-            fmt::format("prt tabulate {} {} --kind {} --layout {} --size {}", settings.bundlePath, source,
-                        settings.kind, settings.layout, settings.size));
+            fmt::format("prt tabulate {} {} --kind {} --layout {} --size {}{}", settings.bundlePath,
+                        shellWord(source), settings.kind, settings.layout, settings.size,
+                        environmentWords(settings.environmentOptions)));
         writeTableFile(staged.string(), table);
         row.bytes = sizeOf(staged);
         row.seconds = watch.seconds();

@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "precompute/io/environment_file.h"
+
 namespace prt {
 
 struct CompressSettings {
@@ -16,7 +18,8 @@ struct CompressSettings {
     /// every one of the environments is at most this, against the bundle's own visibility.
     double targetError = 0;
     std::vector<std::string> environments = {};  ///< of targetError; empty: the built-in skies
-    bool force = false;                     ///< also where the bundle has just that already
+    EnvironmentOptions environmentOptions = {};
+    bool force = false;  ///< also where the bundle has just that already
 };
 
 /// What relighting loses by compression, under one environment.
@@ -48,6 +51,7 @@ struct TabulateSettings {
     std::string kind = "triple-product";    ///< or "light-cosine"
     std::string layout = "cube";
     int size = 32;
+    EnvironmentOptions environmentOptions = {};
     bool force = false;  ///< also tables that the bundle has just so already
 };
 struct TabulateRow {

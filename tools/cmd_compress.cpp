@@ -6,6 +6,7 @@
 #include "precompute/math/sh.h"
 #include "tools/command_line.h"
 #include "tools/commands.h"
+#include "tools/environment_arguments.h"
 #include "tools/report.h"
 
 namespace prt::tools {
@@ -26,6 +27,7 @@ void runCompressCommand(int argc, char** argv) {
               "--env at most so large, against the bundle's own visibility; 0: none");
     line.textList("--env", settings.environments, "FILE|sky:NAME",
                   "environments of --target-error; without any, the built-in skies");
+    addEnvironmentOptions(line, settings.environmentOptions);
     line.flag("--force", settings.force, "compress again where the bundle has just that already");
     if (!line.parse(argc, argv)) return;
     if (settings.targetError > 0 && line.isGiven("--components"))

@@ -61,7 +61,7 @@ RelightData loadData(const RelightArguments& arguments) {
                    arguments.bundlePath);
     }
     for (const EnvironmentArgument& argument : arguments.environments) {
-        data.environments.push_back(loadEnvironment(argument.source));
+        data.environments.push_back(loadEnvironment(argument.source, arguments.environmentOptions));
         data.weights.push_back(argument.weight);
     }
     return data;

@@ -4,6 +4,7 @@
 #include "compress/jobs.h"
 #include "tools/command_line.h"
 #include "tools/commands.h"
+#include "tools/environment_arguments.h"
 #include "tools/report.h"
 
 namespace prt::tools {
@@ -12,8 +13,9 @@ void runTabulateCommand(int argc, char** argv) {
     TabulateSettings settings;
     CommandLine line(
         "prt tabulate", "Writes tables over the normal into a bundle, one per environment.",
-        "Environments: latitude-longitude .exr or .hdr, EXR cubes, or sky:clear, sky:overcast, sky:sunset,\n"
-        "sky:uniform.\n"
+        "Environments: .exr or .hdr in any layout of --env-layout, or sky:clear, sky:overcast, sky:sunset,\n"
+        "sky:uniform, sky:preetham?turbidity=3&elevation=40&azimuth=120, sky:constant?r=1&g=1&b=1,\n"
+        "sky:gradient?top=0.2,0.4,1&bottom=0.1,0.1,0.1.\n"
         "Example:\n  prt tabulate out/house.prt sunset.exr night.exr --kind triple-product --size 32");
     line.positional("BUNDLE", settings.bundlePath, "bundle made by prt precompute");
     line.positionalList("ENVIRONMENT", settings.environments, "environments");
@@ -21,6 +23,7 @@ void runTabulateCommand(int argc, char** argv) {
                 "light x cosine x component (needs prt compress), or light x cosine");
     line.choice("--layout", settings.layout, {"cube"}, "how the sphere of normals is laid out");
     line.integer("--size", settings.size, 1, 1024, "texels along an edge of a cube face");
+    addEnvironmentOptions(line, settings.environmentOptions);
     line.flag("--force", settings.force, "also tables that the bundle has just so already");
     if (!line.parse(argc, argv)) return;
 

@@ -8,6 +8,7 @@
 
 #include "precompute/base/error.h"
 #include "tools/command_line.h"
+#include "tools/environment_arguments.h"
 
 namespace prt::tools {
 namespace {
@@ -50,6 +51,7 @@ void RelightArguments::addTo(CommandLine& line) {
     line.positional("BUNDLE", bundlePath, "bundle made by prt precompute");
     line.textList("--env", environmentTexts, "ENV[:WEIGHT]",
                   "environment and its weight (1); repeat to blend; none: sky:clear");
+    addEnvironmentOptions(line, environmentOptions);
     line.real("--rotate", rotateDeg, -1e6, 1e6, "turn of the environments about the up axis, degrees");
     line.choice("--technique", technique, {"unc", "pca", "reference"},
                 "visibility x light table, weights x component tables, or ray tracing");

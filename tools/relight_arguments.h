@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "precompute/io/environment_file.h"
 #include "precompute/io/scene.h"
 #include "precompute/io/surface_image.h"
 
@@ -33,6 +34,7 @@ struct RelightArguments {
     bool noNormalMap = false, noBackground = false, compareReference = false, each = false;
 
     std::vector<EnvironmentArgument> environments;
+    EnvironmentOptions environmentOptions;
     int width = 0, height = 0;
     std::optional<double> exposureStops;  ///< empty: chosen from the picture
 

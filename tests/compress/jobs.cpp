@@ -206,6 +206,17 @@ TEST_F(Jobs, CompressDoesNothingWhereNothingChanged) {
     EXPECT_EQ(Bundle::open(bundle_).staleReason("pca.exr", true), "");
 }
 
+TEST_F(Jobs, RenewalCommandsAreGoodForAShell) {
+    writeBundle(testVisibility(3, 2));
+    runTabulate({bundle_, {"sky:constant?r=1&g=2&b=3"}, "light-cosine", "cube", 4});
+    const Bundle bundle = Bundle::open(bundle_);
+    for (const BundleFile& file : bundle.files())
+        if (file.name.starts_with("tables/")) {
+            EXPECT_THAT(file.madeBy, testing::HasSubstr(" 'sky:constant?r=1&g=2&b=3' "));
+        }
+    EXPECT_EQ(bundle.files().size(), 2u);
+}
+
 TEST_F(Jobs, TargetErrorTakesAsFewVectorsAsReachIt) {
     writeBundle(testVisibility(4, 12, 40, 50));
     const std::vector<std::string> environments = {"sky:clear", "sky:uniform"};
