@@ -9,6 +9,7 @@
 #include "precompute/base/check.h"
 #include "precompute/base/parallel.h"
 #include "precompute/math/environment.h"
+#include "precompute/math/sphere_map_parts.h"
 
 namespace prt {
 namespace {
@@ -268,13 +269,21 @@ SphereTaps EnvironmentLayoutMap::angularTaps(const Vec3d& direction) const {
     const double r = std::atan2(across, direction.z()) / kPi;
     const double u = across > 0 ? -direction.x() / across * r : r;
     const double v = across > 0 ? -direction.y() / across * r : 0;
-    const double column = (u + 1) / 2 * size_ - 0.5, row = (v + 1) / 2 * size_ - 0.5;
-    const int x0 = int(std::floor(column)), y0 = int(std::floor(row));
-    const double fx = column - x0, fy = row - y0;
-    return {{{angularTexel(x0, y0), float((1 - fx) * (1 - fy))},
-             {angularTexel(x0 + 1, y0), float(fx * (1 - fy))},
-             {angularTexel(x0, y0 + 1), float((1 - fx) * fy)},
-             {angularTexel(x0 + 1, y0 + 1), float(fx * fy)}}};
+    const bool inside = r < 1 - 3.0 / size_;  // all four centres
+    return bilinearTaps((u + 1) / 2 * size_, (v + 1) / 2 * size_,
+                        [&](int x, int y) { return inside ? y * width_ + x : angularTexel(x, y); });
+}
+
+SphereTaps EnvironmentLayoutMap::cubeTaps(const Vec3d& direction) const {
+    const CubePoint point = cubePointFromDirection(direction, size_);
+    const auto inside = [&](double at) { return at >= 0.5 && at < size_ - 0.5; };
+    if (inside(point.x) && inside(point.y))
+        return bilinearTaps(point.x, point.y, [&](int x, int y) { return cubeTexel(point.face, x, y); });
+    const std::array<CubeTap, 4> across = cubeSeamlessTaps(direction, size_);
+    SphereTaps taps;
+    for (size_t i = 0; i < 4; ++i)
+        taps[i] = {cubeTexel(across[i].face, across[i].x, across[i].y), across[i].weight};
+    return taps;
 }
 
 SphereTaps EnvironmentLayoutMap::taps(const Vec3d& direction) const {
@@ -293,13 +302,8 @@ SphereTaps EnvironmentLayoutMap::taps(const Vec3d& direction) const {
             return openExrCubeTaps(direction);
         case EnvironmentLayout::AngularMap:
             return angularTaps(direction);
-        default: {
-            SphereTaps taps;
-            const std::array<CubeTap, 4> cube = cubeSeamlessTaps(direction, size_);
-            for (size_t i = 0; i < 4; ++i)
-                taps[i] = {cubeTexel(cube[i].face, cube[i].x, cube[i].y), cube[i].weight};
-            return taps;
-        }
+        default:
+            return cubeTaps(direction);
     }
 }
 
