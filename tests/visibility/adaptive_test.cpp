@@ -289,7 +289,7 @@ TEST(AdaptiveBake, IsTheSlowOnePointByPoint) {
         ++compared;
         EXPECT_NEAR(fast.error[i], one.error, 2e-4 * one.error + 1e-6) << i;
         for (size_t c = 0; c < 16; ++c)
-            EXPECT_NEAR(fast.coefficients[i * 16 + c], one.coefficients[c], 5e-4)
+            EXPECT_NEAR(fast.coefficients[i * 16 + c], one.coefficients[c], 1e-3)
                 << i;  // the weight is tabulated
     }
     EXPECT_EQ(compared, points.size());
