@@ -13,7 +13,7 @@
 namespace prt {
 
 LiveLight::LiveLight(const std::vector<Environment>& environments, int shOrder, int tableSize)
-    : shOrder_(shOrder), tableSize_(tableSize) {
+    : shOrder_(shOrder), tableSize_(tableSize), builder_(TableLayout("cube", tableSize), shOrder) {
     PRT_CHECK(!environments.empty());
     for (const Environment& environment : environments) {
         environments_.push_back(projectEnvironment(environment.view(), tableEnvironmentShOrder(shOrder)));
@@ -32,7 +32,8 @@ NormalTable LiveLight::lightCosineTable(const std::vector<double>& weights, doub
     table.size = tableSize_;
     table.shOrder = shOrder_;
     table.layers = shCount(shOrder_);
-    table.values = buildLightCosineTable(light, shOrder_, tableSize_);
+    table.values.resize(size_t(3) * size_t(table.layers) * table.texels());
+    builder_.buildLightCosine(light, table.values);
     std::string names, hashes;
     for (size_t k = 0; k < weights.size(); ++k) {
         if (weights[k] == 0) continue;

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "compress/tables/fast_tables.h"
 #include "precompute/io/environment_file.h"
 #include "precompute/io/table_file.h"
 #include "precompute/io/visibility_file.h"
@@ -12,6 +13,7 @@
 
 namespace prt {
 
+/// Not for several threads at once: all tables are made by one builder.
 class LiveLight {
   public:
     /// Projects each environment once, to the order tables need for visibility of shOrder bands.
@@ -27,6 +29,7 @@ class LiveLight {
     std::vector<EnvironmentSh> environments_;
     std::vector<std::string> names_, hashes_;
     int shOrder_, tableSize_;
+    mutable LightTableBuilder builder_;  // only its scratch changes
 };
 
 }  // namespace prt

@@ -169,7 +169,6 @@ PRT_TARGET_CLONES void combineRows(const float* factors, const float* rows, size
 LightTableBuilder::LightTableBuilder(const TableLayout& layout, int shOrder, int cosineBands)
     : layout_(layout), shOrder_(shOrder), cosineBands_(cosineBands) {
     PRT_CHECK_LE(1, shOrder);
-    PRT_CHECK_LE(shOrder, kMaxBundleShOrder);
     PRT_CHECK_LE(1, cosineBands);
     PRT_CHECK_LE(tableEnvironmentShOrder(shOrder, cosineBands), kMaxShOrder);
     mirrors_ = layout.mirrored(0, MirrorAxis::Z) >= 0 ? 3 : 2;

@@ -32,11 +32,11 @@ struct MirrorRun {
 /// the calling thread. What does not depend on the light is computed once; the other functions allocate
 /// nothing. They write to the object: one builder per thread.
 ///
-/// Values equal those of evalLightCosine and buildTripleProductTable at the layout's normals to 1e-5 of the
+/// Values equal those of evalLightCosine, and sums of them, at the layout's normals to 1e-5 of the
 /// table's largest value.
 class LightTableBuilder {
   public:
-    /// @param shOrder      n of the visibility, 1..kMaxBundleShOrder
+    /// @param shOrder      n of the visibility, 1..kMaxShOrder
     /// @param cosineBands  1..kMaxShOrder + 1 − n: kPaperCosineBands is the paper's variant
     LightTableBuilder(const TableLayout& layout, int shOrder, int cosineBands = kTableCosineBands);
 

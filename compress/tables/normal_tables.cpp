@@ -8,6 +8,8 @@
 
 #include <algorithm>
 
+#include "compress/tables/fast_tables.h"
+#include "compress/tables/table_layout.h"
 #include "precompute/base/check.h"
 #include "precompute/base/parallel.h"
 #include "precompute/math/clamped_cosine.h"
@@ -80,12 +82,10 @@ std::vector<float> buildLightCosineTable(const EnvironmentSh& environment, int s
                                          int cosineBands) {
     PRT_CHECK_LE(1, size);
     PRT_CHECK_LE(size, 1024);
-    std::vector<Vec3f> normals;
-    normals.reserve(size_t(6) * size_t(size) * size_t(size));
-    for (int face = 0; face < 6; ++face)
-        for (int y = 0; y < size; ++y)
-            for (int x = 0; x < size; ++x) normals.push_back(cubeTexelDirection(face, x, y, size));
-    return evalLightCosine(environment, shOrder, normals, cosineBands);
+    LightTableBuilder builder(TableLayout("cube", size), shOrder, cosineBands);
+    std::vector<float> values(size_t(3) * size_t(shCount(shOrder)) * builder.texelCount());
+    builder.buildLightCosine(environment, values);
+    return values;
 }
 
 std::vector<float> buildTripleProductTable(std::span<const float> lightCosine, int shOrder, int size,

@@ -26,7 +26,8 @@ constexpr int tableEnvironmentShOrder(int shOrder, int cosineBands = kTableCosin
 std::vector<float> evalLightCosine(const EnvironmentSh& environment, int shOrder,
                                    std::span<const Vec3f> normals, int cosineBands = kTableCosineBands);
 
-/// R_i(n) for every texel normal n of a cube of the given size (layout: math/sphere_map.h).
+/// R_i(n) for every texel normal n of a cube of the given size (layout: math/sphere_map.h), made by a
+/// LightTableBuilder: within 1e-5 of the largest value from evalLightCosine.
 /// @param environment   of tableEnvironmentShOrder(shOrder, cosineBands) bands or more
 /// @param size          1..1024
 /// @return [3 colours][n²][6·size·size]

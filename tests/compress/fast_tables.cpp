@@ -154,7 +154,7 @@ TEST(LightTableBuilderDeath, WrongShapes) {
     GTEST_FLAG_SET(death_test_style, "threadsafe");
     const TableLayout layout("cube", 2);
     EXPECT_DEATH(LightTableBuilder(layout, 0), "shOrder");
-    EXPECT_DEATH(LightTableBuilder(layout, 11), "shOrder");
+    EXPECT_DEATH(LightTableBuilder(layout, 14), "shOrder");
     EXPECT_DEATH(LightTableBuilder(layout, 3, 0), "cosineBands");
     EXPECT_DEATH(LightTableBuilder(layout, 3, 23), "cosineBands");
     LightTableBuilder builder(layout, 2);
