@@ -55,9 +55,9 @@ class TableLayout {
     /// @param direction  any length > 0
     /// @return texels in [0, texelCount), weights ≥ 0 that sum to 1
     SphereTaps taps(const Vec3d& direction) const;
-    /// The texel whose normal is this one's with one coordinate negated; −1 in the layout's texels have no
-    /// such order (octahedral: z, where a mirror image is a transposition).
+    /// The texel whose normal is this one's with one coordinate negated.
     /// @param texel  in [0, texelCount)
+    /// @return −1 for all texels of the octahedral layout and z, where mirroring transposes the image
     int mirrored(int texel, MirrorAxis axis) const;
 
   private:

@@ -113,8 +113,8 @@ TEST_P(BuilderLayouts, TripleProductsOfNoneToAllVectors) {
 }
 INSTANTIATE_TEST_SUITE_P(All, BuilderLayouts, testing::ValuesIn(TableLayout::names()), layoutTestName);
 
-TEST(LightTableBuilder, SkyWithASunAsOften) {
-    // Light after light through one builder: nothing is left of the one before.
+TEST(LightTableBuilder, LightAfterLight) {
+    // Nothing is left of the light before.
     const TableLayout layout("cube", 16);
     const std::vector<Vec3f> normals = texelNormals(layout);
     LightTableBuilder builder(layout, 6);
