@@ -25,6 +25,8 @@ constexpr Eigen::Index kChunkPoints = 256;  // summed in float, beyond that in d
 constexpr size_t kTaskColumns = 16;
 // Holds directions that the rows do not determine where they are, as a share of the mean diagonal.
 constexpr double kRidge = 1e-6;
+// Mean and vectors move by less than their length where rows determine them: .1 to .4 on three scenes.
+constexpr double kLargestStep = 2;
 
 using RowMatrixXf = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 using RowMatrixXd = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
@@ -146,7 +148,8 @@ PcaResult refineForIrradiance(const PcaResult& pca, std::span<const float> rows,
     const RowMatrixXd solved = solveBasis(takeSample(sampledRows(use, normals.size(), dimension), rows,
                                                      weights, normals, pca.components, shOrder, weight),
                                           start);
-    if (!solved.allFinite()) return pca;
+    // Rows of fewer dimensions than vectors leave some of these to rounding.
+    if (!solved.allFinite() || (solved - start).norm() > kLargestStep * start.norm()) return pca;
     const Eigen::MatrixXd vectors = solved.bottomRows(pca.components).transpose();
     const Eigen::MatrixXd orthonormal = Eigen::HouseholderQR<Eigen::MatrixXd>(vectors).householderQ() *
                                         Eigen::MatrixXd::Identity(dimension, pca.components);

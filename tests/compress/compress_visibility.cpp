@@ -9,6 +9,7 @@
 #include "compress/irradiance_weights.h"
 #include "compress/refine_basis.h"
 #include "precompute/base/parallel.h"
+#include "precompute/math/directions.h"
 #include "precompute/math/irradiance_projection.h"
 #include "precompute/math/sh.h"
 #include "tests/compress/test_points.h"
@@ -161,6 +162,44 @@ TEST(RefineBasis, LeavesManyVectorsAlone) {
     EXPECT_EQ(
         refineForIrradiance(pca, points.rows, points.rows, weights, points.normals, {}, shOrder, {}).basis,
         pca.basis);
+}
+
+// All points look alike but for noise, so that most vectors are arbitrary.
+TEST(CompressVisibility, RowsOfFewDimensionsStayBounded) {
+    constexpr int kOrder = 6;
+    const size_t columns = size_t(shCount(kOrder)), count = 600;
+    for (const int distinct : {1, 2, 4}) {
+        std::vector<std::vector<float>> kinds;
+        std::vector<float> rows;
+        std::vector<Vec3f> normals;
+        const Vec3f up(0, 1, 0);
+        const IrradianceProjection projection(kOrder);
+        for (int kind = 0; kind < distinct; ++kind) {
+            std::vector<float> b(columns), row(columns), basis(columns);
+            const std::vector<Vec3f> directions = sphericalFibonacci(128 + 16 * kind);
+            for (const Vec3f& direction : directions) {
+                if (!(direction.y() > 0)) continue;
+                evalSh(kOrder, direction, basis);
+                for (size_t c = 0; c < columns; ++c)
+                    b[c] += float(irradianceWeight(double(direction.y())) * 4 * M_PI) * basis[c] /
+                            float(directions.size());
+            }
+            projection.solve(up, b, float(M_PI), row);
+            kinds.push_back(row);
+        }
+        for (size_t i = 0; i < count; ++i) {
+            const std::vector<float>& row = kinds[i % kinds.size()];
+            rows.insert(rows.end(), row.begin(), row.end());
+            normals.push_back(up);
+        }
+        const CompressedVisibility compressed =
+            compressVisibility(rows, {}, normals, kOrder, Projection{}, 16, WeightsFit::Irradiance);
+        for (const float weight : compressed.weights) EXPECT_LT(std::abs(weight), 100);
+        for (const float mean : compressed.pca.mean) EXPECT_LT(std::abs(mean), 100);
+        EXPECT_LT(irradianceRelativeRmse(compressed.pca, rows, compressed.weights, normals, {}, kOrder, {}),
+                  0.1)
+            << distinct;
+    }
 }
 
 }  // namespace
