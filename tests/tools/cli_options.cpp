@@ -6,9 +6,10 @@
 namespace prt::test {
 namespace {
 
-const std::vector<std::string> kCommands = {"precompute", "compress", "tabulate", "relight", "info"};
+const std::vector<std::string> kCommands = {"precompute", "compress", "tabulate",
+                                            "relight",    "export",   "info"};
 const std::vector<std::string> kMeasurements = {"bake",       "basis",    "parameterization", "product",
-                                                "projection", "rotation", "sampling"};
+                                                "projection", "rotation", "sampling",         "tables"};
 
 TEST(Options, NoArgumentsPrintsUsageAndFails) {
     Folder folder;
@@ -74,6 +75,9 @@ TEST(Options, JsonOnStandardOutputIsNothingButJson) {
         {"compress", "box.prt", "--components", "4"},
         {"tabulate", "box.prt", "sky:clear", "--size", "8"},
         {"relight", "box.prt", "-o", "a.png", "--size", "32x20", "--compare-reference"},
+        {"export", "box.prt", "-o", "ship"},
+        {"measure", "tables", "--env", "sky:clear", "--sizes", "8", "--layouts", "cube", "--points", "50",
+         "--rounds", "1", "--order", "3", "--plot", "none"},
         {"info", "box.prt"},
         {"measure", "basis", "--signal", "functions", "--bases", "h", "--plot", "none"},
         {"measure", "parameterization", "--orders", "2", "--points", "1000", "--max-samples", "100", "--plot",
@@ -91,6 +95,8 @@ TEST(Options, JsonOnStandardOutputIsNothingButJson) {
         {"components", "explained_variance", "relative_rmse", "seconds"},
         {"rows"},
         {"floor_rmse", "rows"},
+        {"rows", "bytes", "bytes_per_texel"},
+        {"measure", "rows"},
         {"format_version", "conventions", "files"},
         {"measure", "rows"},
         {"measure", "points", "rows"},
