@@ -73,7 +73,8 @@ void CommandLine::text(const std::string& names, std::string& value, const std::
     const std::string text = value.empty() ? help : fmt::format("{} [default {}]", help, value);
     CLI::Option* option = state_->app.add_option(names, value, text)->type_name(type);
     if (required) option->required();
-    state_->checks.push_back([option, &value, name = State::longName(names)] {
+    const std::string name = names.find("--") == std::string::npos ? names : State::longName(names);
+    state_->checks.push_back([option, &value, name] {
         if (option->count() > 0 && value.empty()) throw UsageError(name, "its value is empty", "see --help");
     });
 }
