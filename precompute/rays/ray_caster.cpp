@@ -196,8 +196,8 @@ void RayCaster::occludedPackets(std::span<const Vec3f> origins, std::span<const 
 
 bool RayCaster::packetsAreFaster(float spacing) const {
     const std::string isa = instructionSet();
-    // Where both are about equally fast, in mean edges of triangles: rays of four orientations slow packets more
-    // than streams (tools/docs/performance.md).
+    // Where both are about equally fast, in mean edges of triangles: rays of four orientations slow packets
+    // more than streams (tools/docs/performance.md).
     const float limit = isa == "AVX512" ? 0.35f : isa == "AVX2" ? 0.15f : 0.0f;
     return spacing < limit * state_->meanEdge;
 }
