@@ -22,7 +22,11 @@ struct CommandLine::State {
     std::vector<std::function<void()>> checks;
 
     /// The long name, as errors should call it.
-    static std::string longName(const std::string& names) { return names.substr(names.find("--")); }
+    // Positional arguments have no long name: theirs as it is.
+    static std::string longName(const std::string& names) {
+        const size_t dashes = names.find("--");
+        return dashes == std::string::npos ? names : names.substr(dashes);
+    }
 };
 
 CommandLine::CommandLine(const std::string& name, const std::string& description, const std::string& epilogue)
@@ -73,8 +77,7 @@ void CommandLine::text(const std::string& names, std::string& value, const std::
     const std::string text = value.empty() ? help : fmt::format("{} [default {}]", help, value);
     CLI::Option* option = state_->app.add_option(names, value, text)->type_name(type);
     if (required) option->required();
-    const std::string name = names.find("--") == std::string::npos ? names : State::longName(names);
-    state_->checks.push_back([option, &value, name] {
+    state_->checks.push_back([option, &value, name = State::longName(names)] {
         if (option->count() > 0 && value.empty()) throw UsageError(name, "its value is empty", "see --help");
     });
 }

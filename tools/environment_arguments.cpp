@@ -15,4 +15,13 @@ void addEnvironmentOptions(CommandLine& line, EnvironmentOptions& options) {
               "environment files show the sphere from its other side: left and right are swapped");
 }
 
+std::vector<Environment> loadEnvironmentsOrSkies(std::vector<std::string> sources, bool withUniform) {
+    if (sources.empty())
+        for (const std::string& sky : proceduralSkyNames())
+            if (withUniform || sky != "uniform") sources.push_back("sky:" + sky);
+    std::vector<Environment> environments;
+    for (const std::string& source : sources) environments.push_back(loadEnvironment(source));
+    return environments;
+}
+
 }  // namespace prt::tools

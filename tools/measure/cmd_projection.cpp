@@ -12,6 +12,7 @@
 #include "precompute/mesh/load_mesh.h"
 #include "precompute/visibility/bake.h"
 #include "tools/command_line.h"
+#include "tools/environment_arguments.h"
 #include "tools/measure/commands.h"
 #include "tools/measure/output.h"
 #include "tools/measure/projection.h"
@@ -103,15 +104,6 @@ Figure errorFigure(const std::vector<MeshResult>& meshes) {
     return figure;
 }
 
-std::vector<Environment> loadEnvironments(std::vector<std::string> sources) {
-    if (sources.empty())
-        for (const std::string& sky : proceduralSkyNames())
-            if (sky != "uniform") sources.push_back("sky:" + sky);
-    std::vector<Environment> environments;
-    for (const std::string& source : sources) environments.push_back(loadEnvironment(source));
-    return environments;
-}
-
 }  // namespace
 
 void runMeasureProjection(int argc, char** argv) {
@@ -148,7 +140,7 @@ void runMeasureProjection(int argc, char** argv) {
     study.tiltsDeg.clear();
     for (const int tilt : parseIntegerList("--tilts", tilts, 0, 89)) study.tiltsDeg.push_back(tilt);
 
-    const std::vector<Environment> environments = loadEnvironments(sources);
+    const std::vector<Environment> environments = loadEnvironmentsOrSkies(sources, false);
     std::vector<MeshResult> results;
     for (const std::string& mesh : meshes) {
         const Scene scene = loadMesh(mesh, {});

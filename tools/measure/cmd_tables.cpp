@@ -7,6 +7,7 @@
 #include "precompute/base/log.h"
 #include "precompute/math/sh.h"
 #include "tools/command_line.h"
+#include "tools/environment_arguments.h"
 #include "tools/measure/commands.h"
 #include "tools/measure/output.h"
 #include "tools/measure/tables.h"
@@ -90,14 +91,6 @@ Figure errorFigure(const std::vector<Summary>& all) {
     return figure;
 }
 
-std::vector<Environment> loadEnvironments(std::vector<std::string> sources) {
-    if (sources.empty())
-        for (const std::string& sky : proceduralSkyNames()) sources.push_back("sky:" + sky);
-    std::vector<Environment> environments;
-    for (const std::string& source : sources) environments.push_back(loadEnvironment(source));
-    return environments;
-}
-
 }  // namespace
 
 void runMeasureTables(int argc, char** argv) {
@@ -140,7 +133,7 @@ void runMeasureTables(int argc, char** argv) {
     study.variants = variant == "both" ? tableVariants() : std::vector<std::string>{variant};
 
     const Stopwatch watch;
-    const std::vector<Environment> environments = loadEnvironments(sources);
+    const std::vector<Environment> environments = loadEnvironmentsOrSkies(sources, true);
     const TableResult result = studyTables(environments, study);
     const std::vector<Summary> all = summarise(result);
     Measurement measurement{.name = "tables", .rows = rowTable(all)};
