@@ -1,7 +1,7 @@
 // prt compress: principal components of a bundle's visibility.
 #include <fmt/format.h>
 
-#include "compress/jobs.h"
+#include "compress/compress_job.h"
 #include "precompute/base/error.h"
 #include "precompute/math/sh.h"
 #include "tools/command_line.h"

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <optional>
 
-#include "compress/jobs.h"
+#include "compress/tabulate_job.h"
 #include "precompute/base/atomic_file.h"
 #include "precompute/base/error.h"
 #include "precompute/base/log.h"

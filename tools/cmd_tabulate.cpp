@@ -1,7 +1,7 @@
 // prt tabulate: tables for an engine to ship.
 #include <fmt/format.h>
 
-#include "compress/jobs.h"
+#include "compress/tabulate_job.h"
 #include "tools/command_line.h"
 #include "tools/commands.h"
 #include "tools/environment_arguments.h"

@@ -7,7 +7,8 @@
 #include <gtest/gtest.h>
 
 #include "compress/export_bundle.h"
-#include "compress/jobs.h"
+#include "compress/compress_job.h"
+#include "compress/tabulate_job.h"
 #include "precompute/base/atomic_file.h"
 #include "precompute/io/bundle.h"
 #include "tests/base/temporary_directory.h"

@@ -1,11 +1,7 @@
-// The jobs on real bundles: what they write, what they refuse, and that a failure changes nothing.
-#include "compress/jobs.h"
+// prt compress on real bundles: what it writes, what it refuses, and that a failure changes nothing.
+#include "compress/compress_job.h"
 
 #include <cmath>
-#include <fstream>
-#include <map>
-#include <random>
-#include <sstream>
 
 #include "compress/choose_components.h"
 #include "compress/irradiance_weights.h"
@@ -13,93 +9,12 @@
 #include "compress/relit_error.h"
 #include "compress/tables/normal_tables.h"
 #include "precompute/base/error.h"
-#include "precompute/io/bundle.h"
 #include "precompute/io/environment_file.h"
-#include "precompute/io/table_file.h"
-#include "precompute/io/visibility_file.h"
 #include "precompute/math/directions.h"
-#include "precompute/math/sh.h"
+#include "tests/compress/job_fixture.h"
 
 namespace prt {
 namespace {
-
-namespace fs = std::filesystem;
-
-// Smooth coefficients of a few dimensions, validity of every kind.
-VisibilityMap testVisibility(int shOrder, unsigned seed, int width = 24, int height = 20) {
-    VisibilityMap map;
-    map.grid = {PointDomain::Texel, width, height, size_t(width * height)};
-    map.shOrder = shOrder;
-    const size_t n2 = size_t(shCount(shOrder));
-    std::mt19937 random(seed);
-    std::normal_distribution<float> normal;
-    for (size_t i = 0; i < map.grid.count; ++i) {
-        map.validity.push_back(Validity(i % 5));
-        map.ao.push_back(0.5f);
-        map.normals.push_back(Vec3f(normal(random), normal(random), normal(random)).normalized());
-        for (size_t k = 0; k < n2; ++k)
-            map.coefficients.push_back(map.validity[i] == Validity::Empty ? 0.0f
-                                                                          : normal(random) / float(k + 1));
-    }
-    map.projection = kPlainProjection;
-    map.attributes = {{"rays", "1024"}};
-    return map;
-}
-
-class Jobs : public testing::Test {
-  protected:
-    void SetUp() override {
-        std::string pattern = (fs::temp_directory_path() / "prt-jobs-XXXXXX").string();
-        ASSERT_NE(mkdtemp(pattern.data()), nullptr);
-        directory_ = pattern;
-        bundle_ = (directory_ / "thing.prt").string();
-    }
-    void TearDown() override { fs::remove_all(directory_); }
-
-    void writeBundle(const VisibilityMap& map) {
-        BundleTransaction transaction(bundle_, true);
-        const fs::path staged = transaction.stage("visibility.exr", {}, "prt precompute thing.obj");
-        writeVisibilityFile(staged.string(), map);
-        transaction.commit();
-    }
-    // Every file below the bundle and its bytes.
-    std::map<std::string, std::string> contents() const {
-        std::map<std::string, std::string> result;
-        for (const auto& entry : fs::recursive_directory_iterator(bundle_)) {
-            if (!entry.is_regular_file()) continue;
-            std::ifstream file(entry.path(), std::ios::binary);
-            std::ostringstream bytes;
-            bytes << file.rdbuf();
-            result[fs::relative(entry.path(), bundle_).string()] = bytes.str();
-        }
-        return result;
-    }
-    // An environment whose radiance is `level` everywhere.
-    std::string writeEnvironment(const std::string& name, float level) const {
-        const fs::path path = directory_ / name;
-        fs::create_directories(path.parent_path());
-        writeExrImage(path.string(), {16, 8, 3, std::vector<float>(16 * 8 * 3, level)});
-        return path.string();
-    }
-    TabulateSettings tabulate(std::vector<std::string> environments, std::string kind) const {
-        return {bundle_, std::move(environments), std::move(kind), "cube", 8};
-    }
-    template <class Failure, class Run>
-    void expectRefused(const Run& run, const std::vector<std::string>& words) const {
-        const auto before = contents();
-        try {
-            run();
-            FAIL() << "was not refused";
-        } catch (const Failure& error) {
-            for (const std::string& word : words) EXPECT_THAT(error.what(), testing::HasSubstr(word));
-            EXPECT_THAT(error.what(), testing::Not(testing::HasSubstr("\n")));
-        }
-        EXPECT_EQ(contents(), before);
-    }
-
-    fs::path directory_;
-    std::string bundle_;
-};
 
 class JobsWeights : public Jobs, public testing::WithParamInterface<const char*> {};
 INSTANTIATE_TEST_SUITE_P(Kinds, JobsWeights, testing::Values("irradiance", "plain"));
@@ -344,125 +259,6 @@ TEST_F(Jobs, CompressRefusesWhatItCannotUse) {
     expectRefused<InputError>([&] { runCompress({bundle_, 4}); }, {"point 6"});
     fs::resize_file(fs::path(bundle_) / "visibility.exr", 100);
     expectRefused<InputError>([&] { runCompress({bundle_, 4}); }, {"visibility.exr"});
-}
-
-TEST_F(Jobs, LightCosineTablesOfUniformLight) {
-    writeBundle(testVisibility(3, 6));
-    const std::string day = writeEnvironment("day.exr", 1), dusk = writeEnvironment("dusk light.exr", 0.25f);
-    const std::vector<TabulateRow> rows = runTabulate(tabulate({day, dusk}, "light-cosine"));
-    ASSERT_EQ(rows.size(), 2u);
-    EXPECT_EQ(rows[0].environment, "day");
-    EXPECT_EQ(rows[0].file, "tables/day.light-cosine.cube.exr");
-    EXPECT_EQ(rows[1].file, "tables/dusk_light.light-cosine.cube.exr");
-    const Bundle bundle = Bundle::open(bundle_);
-    for (size_t k = 0; k < 2; ++k) {
-        EXPECT_EQ(rows[k].bytes, fs::file_size(fs::path(bundle_) / rows[k].file));
-        EXPECT_EQ(bundle.staleReason(rows[k].file, true), "");
-        const NormalTable table = readTableFile((fs::path(bundle_) / rows[k].file).string());
-        EXPECT_EQ(table.kind, TableKind::LightCosine);
-        EXPECT_EQ(table.size, 8);
-        EXPECT_EQ(table.shOrder, 3);
-        EXPECT_EQ(table.layers, 9);
-        EXPECT_EQ(table.attributes.at("environmentName"), rows[k].environment);
-        EXPECT_EQ(table.attributes.at("environmentHash"), loadEnvironment(k ? dusk : day).contentHash);
-        // An open point: irradiance π times the radiance; 16×8 texels project a constant to 1 %.
-        for (size_t t = 0; t < table.texels(); ++t)
-            EXPECT_NEAR(std::sqrt(4 * M_PI) * double(table.layer(2, 0)[t]), M_PI * (k ? 0.25 : 1.0),
-                        0.01 * M_PI);
-    }
-}
-
-TEST_F(Jobs, TripleProductTablesFollowTheBasisOfTheBundle) {
-    writeBundle(testVisibility(4, 7));
-    runCompress({bundle_, 6});
-    const std::vector<TabulateRow> rows =
-        runTabulate({bundle_, {"sky:clear", "sky:overcast"}, "triple-product", "cube", 5});
-    ASSERT_EQ(rows.size(), 2u);
-    const PcaMap pca = readPcaFile(bundle_ + "/pca.exr");
-    const Environment sky = loadEnvironment("sky:clear");
-    const std::vector<float> lightCosine =
-        buildLightCosineTable(projectEnvironment(sky.view(), tableEnvironmentShOrder(4)), 4, 5);
-    const NormalTable table = readTableFile((fs::path(bundle_) / rows[0].file).string());
-    EXPECT_EQ(table.kind, TableKind::TripleProduct);
-    EXPECT_EQ(table.layers, 7);
-    EXPECT_EQ(table.values, buildTripleProductTable(lightCosine, 4, 5, pca.mean, pca.basis));
-    const Bundle bundle = Bundle::open(bundle_);
-    EXPECT_EQ(bundle.find(rows[0].file)->madeFrom.at("pca.exr"), bundle.find("pca.exr")->xxh3);
-    EXPECT_THAT(bundle.find(rows[1].file)->madeBy, testing::HasSubstr("sky:overcast"));
-}
-
-TEST_F(Jobs, CompressingAgainMakesTripleProductTablesStaleButNotLightCosine) {
-    writeBundle(testVisibility(3, 8));
-    runCompress({bundle_, 4});
-    const std::string triple = runTabulate(tabulate({"sky:clear"}, "triple-product"))[0].file;
-    const std::string cosine = runTabulate(tabulate({"sky:clear"}, "light-cosine"))[0].file;
-    EXPECT_THAT(Bundle::open(bundle_).section("tabulate"),
-                testing::AllOf(testing::HasSubstr(triple), testing::HasSubstr(cosine)));
-    runCompress({bundle_, 4});
-    EXPECT_EQ(Bundle::open(bundle_).staleReason(triple, false), "");
-    runCompress({bundle_, 3});
-    EXPECT_NE(Bundle::open(bundle_).staleReason(triple, false), "");
-    EXPECT_EQ(Bundle::open(bundle_).staleReason(cosine, false), "");
-    writeBundle(testVisibility(3, 9));
-    EXPECT_NE(Bundle::open(bundle_).staleReason("pca.exr", false), "");
-    expectRefused<InputError>([&] { runTabulate(tabulate({"sky:clear"}, "triple-product")); },
-                              {"pca.exr", "prt compress"});
-}
-
-TEST_F(Jobs, TabulateRefusesBadSettings) {
-    writeBundle(testVisibility(3, 10));
-    const auto refused = [&](TabulateSettings settings, const std::vector<std::string>& words) {
-        expectRefused<UsageError>([&] { runTabulate(settings); }, words);
-    };
-    TabulateSettings good = tabulate({"sky:clear"}, "light-cosine"), bad = good;
-    bad.layout = "dual-paraboloid";
-    refused(bad, {"--layout", "dual-paraboloid", "cube"});
-    bad = good;
-    bad.kind = "wavelet";
-    refused(bad, {"--kind", "wavelet", "light-cosine", "triple-product"});
-    for (const int size : {0, -1, 1025}) {
-        bad = good;
-        bad.size = size;
-        refused(bad, {"--size", std::to_string(size), "1 to 1024"});
-    }
-    bad = good;
-    bad.environments.clear();
-    refused(bad, {"environment"});
-    bad.environments = {"sky:clear", "sky:overcast", "sky:clear"};
-    refused(bad, {"sky:clear"});
-}
-
-TEST_F(Jobs, EnvironmentsOfOneNameAreRefusedAndNothingIsWritten) {
-    writeBundle(testVisibility(3, 11));
-    const std::string a = writeEnvironment("a/light.exr", 1), b = writeEnvironment("b/light.exr", 2),
-                      c = writeEnvironment("b/sun+sky.exr", 2), d = writeEnvironment("b/sun sky.exr", 2);
-    expectRefused<UsageError>([&] { runTabulate(tabulate({a, "sky:clear", b}, "light-cosine")); }, {a, b});
-    expectRefused<UsageError>([&] { runTabulate(tabulate({c, d}, "light-cosine")); }, {c, d});
-    const fs::path broken = directory_ / "broken.exr";
-    std::ofstream(broken) << "not an image";
-    expectRefused<InputError>(
-        [&] {
-            runTabulate(tabulate({a, broken.string()}, "light-cosine"));
-        },
-        {"broken.exr"});
-    expectRefused<InputError>(
-        [&] {
-            runTabulate(tabulate({a, (directory_ / "absent.exr").string()}, "light-cosine"));
-        },
-        {"absent.exr"});
-    EXPECT_EQ(runTabulate(tabulate({a}, "light-cosine")).size(), 1u);
-}
-
-TEST_F(Jobs, TripleProductNeedsCompressedVisibility) {
-    writeBundle(testVisibility(3, 12));
-    expectRefused<InputError>([&] { runTabulate(tabulate({"sky:clear"}, "triple-product")); },
-                              {"pca.exr", "prt compress"});
-}
-
-TEST(TableFileName, KeepsOnlyHarmlessCharacters) {
-    EXPECT_EQ(tableFileName("night_2-b", "light-cosine", "cube"), "tables/night_2-b.light-cosine.cube.exr");
-    EXPECT_EQ(tableFileName("../a b.c:ü", "triple-product", "cube"),
-              "tables/___a_b_c___.triple-product.cube.exr");
 }
 
 }  // namespace
