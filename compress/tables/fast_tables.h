@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "compress/tables/normal_tables.h"
-#include "compress/tables/table_layout.h"
+#include "precompute/math/table_layout.h"
 
 namespace prt {
 

@@ -9,13 +9,13 @@
 #include <algorithm>
 
 #include "compress/tables/fast_tables.h"
-#include "compress/tables/table_layout.h"
 #include "precompute/base/check.h"
 #include "precompute/base/parallel.h"
 #include "precompute/math/clamped_cosine.h"
 #include "precompute/math/sh.h"
 #include "precompute/math/sh_product.h"
 #include "precompute/math/sphere_map.h"
+#include "precompute/math/table_layout.h"
 
 namespace prt {
 namespace {

@@ -1,4 +1,4 @@
-// Lights that tables are tested with, and names of such tests. Internal to the tests of this folder.
+// Lights that tables are tested with, and names of such tests. For the tests of tables and of their layouts.
 #pragma once
 
 #include <gtest/gtest.h>

@@ -3,9 +3,9 @@
 
 #include <algorithm>
 
-#include "compress/tables/table_layout.h"
 #include "precompute/base/log.h"
 #include "precompute/math/sh.h"
+#include "precompute/math/table_layout.h"
 #include "tools/command_line.h"
 #include "tools/environment_arguments.h"
 #include "tools/measure/commands.h"

@@ -10,12 +10,12 @@
 
 #include "compress/tables/fast_tables.h"
 #include "compress/tables/normal_tables.h"
-#include "compress/tables/table_layout.h"
 #include "precompute/base/check.h"
 #include "precompute/base/error.h"
 #include "precompute/base/parallel.h"
 #include "precompute/math/directions.h"
 #include "precompute/math/sh.h"
+#include "precompute/math/table_layout.h"
 #include "tools/measure/timing.h"
 
 namespace prt::tools {

@@ -1,6 +1,6 @@
 // Layouts of tables over the normal: [IwanickiSloan2012, Sec. 3.2 and Appendix A] with the concentric map of
 // [ShirleyChiu1997], and octahedra [PraunHoppe2003] with the border that engines store [Majercik2019].
-#include "compress/tables/table_layout.h"
+#include "precompute/math/table_layout.h"
 
 #include <fmt/format.h>
 

@@ -1,5 +1,5 @@
 // Layouts of tables: normals, mirror images, and lookups of smooth functions over the sphere and at seams.
-#include "compress/tables/table_layout.h"
+#include "precompute/math/table_layout.h"
 
 #include <algorithm>
 #include <array>
