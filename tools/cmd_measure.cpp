@@ -22,6 +22,8 @@ const std::vector<MeasureCommand> kMeasureCommands = {
     {"bake", "rays per second of the bake and of bare ray casting, time by stage", runMeasureBake},
     {"basis", "Habel Fig. 3, Gautron Figs. 4, 5 and 10: bases against signals and coefficients",
      runMeasureBasis},
+    {"compression", "Iwanicki & Sloan Figs. 5 and 6: error, bytes and work of compressed visibility",
+     runMeasureCompression},
     {"parameterization", "Iwanicki & Sloan Fig. 8: error of tables over the sphere by layout and size",
      runMeasureParameterization},
     {"product", "products of expansions: time, non-zeros, multiplications", runMeasureProduct},

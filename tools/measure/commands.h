@@ -6,6 +6,7 @@ namespace prt::tools {
 void runMeasureBake(int argc, char** argv);
 void runMeasureParameterization(int argc, char** argv);
 void runMeasureBasis(int argc, char** argv);
+void runMeasureCompression(int argc, char** argv);
 void runMeasureRotation(int argc, char** argv);
 void runMeasureProduct(int argc, char** argv);
 void runMeasureProjection(int argc, char** argv);
