@@ -12,26 +12,7 @@
 namespace prt {
 namespace {
 
-constexpr size_t kMostSampleRows = 20000;
-
-// Every k-th of the rows in use.
-struct Sample {
-    std::vector<float> rows;
-    std::vector<Vec3f> normals;
-
-    Sample(std::span<const float> all, std::span<const uint8_t> use, std::span<const Vec3f> allNormals,
-           size_t columns) {
-        std::vector<size_t> indices;
-        for (size_t i = 0; i < allNormals.size(); ++i)
-            if (use.empty() || use[i]) indices.push_back(i);
-        const size_t step = std::max<size_t>(1, (indices.size() + kMostSampleRows - 1) / kMostSampleRows);
-        for (size_t k = 0; k < indices.size(); k += step) {
-            const std::span<const float> row = all.subspan(indices[k] * columns, columns);
-            rows.insert(rows.end(), row.begin(), row.end());
-            normals.push_back(allNormals[indices[k]]);
-        }
-    }
-};
+constexpr size_t kProbedPoints = 2048;
 
 std::vector<double> errorsOf(const RelitProbe& probe, const CompressedVisibility& compressed,
                              std::span<const float> rows, size_t columns) {
@@ -52,25 +33,6 @@ std::vector<double> errorsOf(const RelitProbe& probe, const CompressedVisibility
 
 double largest(const std::vector<double>& errors) { return *std::max_element(errors.begin(), errors.end()); }
 
-// On the sample alone.
-int leastComponents(const Sample& sample, int shOrder, const Projection& projection, WeightsFit fit,
-                    std::span<const EnvironmentSh> environments, double targetError) {
-    const size_t columns = size_t(shCount(shOrder));
-    const RelitProbe probe(shOrder, sample.normals, {}, environments);
-    int low = 1, high = int(columns);
-    while (low < high) {
-        throwIfInterrupted();
-        const int middle = (low + high) / 2;
-        const CompressedVisibility compressed =
-            compressVisibility(sample.rows, {}, sample.normals, shOrder, projection, middle, fit);
-        if (largest(errorsOf(probe, compressed, sample.rows, columns)) <= targetError)
-            high = middle;
-        else
-            low = middle + 1;
-    }
-    return low;
-}
-
 }  // namespace
 
 std::vector<double> relitErrors(const CompressedVisibility& compressed, std::span<const float> rows,
@@ -80,25 +42,34 @@ std::vector<double> relitErrors(const CompressedVisibility& compressed, std::spa
                     size_t(shCount(shOrder)));
 }
 
-ChosenCompression compressToError(std::span<const float> rows, std::span<const uint8_t> use,
-                                  std::span<const Vec3f> normals, int shOrder, const Projection& projection,
-                                  WeightsFit fit, std::span<const EnvironmentSh> environments,
-                                  double targetError) {
+ChosenBasis chooseBasis(const VisibilityStatistics& statistics, int shOrder, const Projection& projection,
+                        CompressionSettings settings, std::span<const EnvironmentSh> environments,
+                        double targetError) {
     PRT_CHECK(targetError > 0);
     const size_t columns = size_t(shCount(shOrder));
-    PRT_CHECK_EQ(rows.size(), normals.size() * columns);
-    const Sample sample(rows, use, normals, columns);
-    int components = sample.normals.empty()
-                         ? 1
-                         : leastComponents(sample, shOrder, projection, fit, environments, targetError);
-    const RelitProbe probe(shOrder, normals, use, environments);
-    for (;; ++components) {
+    const SampledRows sample = thinned(statistics.sample(), columns, kProbedPoints);
+    const RelitProbe probe(shOrder, sample.normals, {}, environments);
+    const VisibilityInMemory source(shOrder, {0, sample.rows, sample.normals, {}, {}, {}});
+    const auto chosen = [&](int components) {
         throwIfInterrupted();
-        ChosenCompression result{compressVisibility(rows, use, normals, shOrder, projection, components, fit),
-                                 {}};
-        result.relitErrors = errorsOf(probe, result.compressed, rows, columns);
-        if (components == int(columns) || largest(result.relitErrors) <= targetError) return result;
+        settings.components = components;
+        CompressedVisibility compressed{statistics.basis(settings), {}};
+        compressRows(source, projection, compressed.pca, settings.fit, [&](std::span<const float> weights) {
+            compressed.weights.assign(weights.begin(), weights.end());
+        });
+        std::vector<double> errors = errorsOf(probe, compressed, sample.rows, columns);
+        return ChosenBasis{std::move(compressed.pca), std::move(errors)};
+    };
+    int low = 1;
+    ChosenBasis best = chosen(int(columns));
+    while (low < best.pca.components) {
+        ChosenBasis middle = chosen((low + best.pca.components) / 2);
+        if (largest(middle.relitErrors) <= targetError)
+            best = std::move(middle);
+        else
+            low = middle.pca.components + 1;
     }
+    return best;
 }
 
 }  // namespace prt

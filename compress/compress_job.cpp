@@ -11,8 +11,6 @@
 
 #include "compress/choose_components.h"
 #include "compress/compress_visibility.h"
-#include "compress/irradiance_weights.h"
-#include "compress/pca.h"
 #include "compress/renewal_command.h"
 #include "compress/tables/normal_tables.h"
 #include "precompute/base/error.h"
@@ -30,11 +28,13 @@ constexpr const char* kPca = "pca.exr";
 constexpr const char* kIrradiance = "irradiance";
 
 std::string compressCommand(const CompressSettings& settings) {
+    std::string command = fmt::format("prt compress {}", settings.bundlePath);
     if (settings.targetError == 0)
-        return fmt::format("prt compress {} --components {} --weights {}", settings.bundlePath,
-                           settings.components, settings.weights);
-    std::string command = fmt::format("prt compress {} --target-error {:g} --weights {}", settings.bundlePath,
-                                      settings.targetError, settings.weights);
+        command += fmt::format(" --components {}", settings.components);
+    else
+        command += fmt::format(" --target-error {:g}", settings.targetError);
+    command += fmt::format(" --weights {} --covariance {}", settings.weights, settings.covariance);
+    if (settings.targetError == 0) return command;
     for (const std::string& environment : settings.environments)
         command += " --env " + shellWord(environment);
     return command + environmentWords(settings.environmentOptions);
@@ -56,14 +56,19 @@ void checkTargetError(double target) {
         throw UsageError("--target-error", fmt::format("{} is out of range", target), "use 1e-6 to 1");
 }
 
-void checkWeights(const std::string& weights) {
-    if (weights != kIrradiance && weights != "plain")
-        throw UsageError("--weights", fmt::format("there is no kind of weights called '{}'", weights),
+void checkKinds(const CompressSettings& settings) {
+    if (settings.weights != kIrradiance && settings.weights != "plain")
+        throw UsageError("--weights",
+                         fmt::format("there is no kind of weights called '{}'", settings.weights),
+                         "use irradiance or plain");
+    if (settings.covariance != kIrradiance && settings.covariance != "plain")
+        throw UsageError("--covariance",
+                         fmt::format("there is no kind of covariance called '{}'", settings.covariance),
                          "use irradiance or plain");
 }
 
-PcaMap makePcaMap(const VisibilityMap& visibility, const PcaResult& pca, std::vector<float> weights,
-                  const std::string& kind) {
+// All but the weights.
+PcaMap makePcaMap(const VisibilityMap& visibility, const PcaResult& pca, const CompressSettings& settings) {
     PcaMap map;
     map.grid = visibility.grid;
     map.shOrder = visibility.shOrder;
@@ -72,12 +77,12 @@ PcaMap makePcaMap(const VisibilityMap& visibility, const PcaResult& pca, std::ve
     map.basis = pca.basis;
     map.variance = pca.variance;
     map.projection = visibility.projection;
-    map.weights = std::move(weights);
     // How the visibility was projected stays true of its compressed form.
     map.attributes = visibility.attributes;
     map.attributes["explainedVariance"] = fmt::format("{:.9g}", pca.explainedVariance);
-    map.attributes["weightsFit"] = kind;
-    if (kind == kIrradiance) {
+    map.attributes["weightsFit"] = settings.weights;
+    map.attributes["covariance"] = settings.covariance;
+    if (settings.weights == kIrradiance) {
         const IrradianceWeight& weight = visibility.projection.weight;
         map.attributes["weightsConeDegrees"] = fmt::format("{:.9g}", weight.coneDegrees);
         map.attributes["weightsFloor"] = fmt::format("{:.9g}", weight.floor);
@@ -105,7 +110,7 @@ struct TargetEnvironments {
 };
 
 nlohmann::json compressSettingsJson(const CompressSettings& settings, const TargetEnvironments& target) {
-    nlohmann::json json = {{"weights", settings.weights}};
+    nlohmann::json json = {{"weights", settings.weights}, {"covariance", settings.covariance}};
     if (settings.targetError == 0) {
         json["components"] = settings.components;
     } else {
@@ -159,30 +164,32 @@ std::optional<CompressReport> reportOfSame(const Bundle& bundle, const std::stri
     }
 }
 
-CompressedVisibility compress(const VisibilityMap& visibility, const std::vector<uint8_t>& valid,
-                              const CompressSettings& settings, const TargetEnvironments& target,
-                              CompressReport& report) {
-    const WeightsFit fit = settings.weights == kIrradiance ? WeightsFit::Irradiance : WeightsFit::Plain;
-    if (settings.targetError == 0)
-        return compressVisibility(visibility.coefficients, valid, visibility.normals, visibility.shOrder,
-                                  visibility.projection, settings.components, fit);
+CompressionSettings compressionSettings(const CompressSettings& settings) {
+    return {settings.components, settings.weights == kIrradiance ? WeightsFit::Irradiance : WeightsFit::Plain,
+            settings.covariance == kIrradiance ? Covariance::Irradiance : Covariance::Plain};
+}
+
+PcaResult findBasis(const VisibilityOnDisk& rows, const VisibilityStatistics& statistics,
+                    const CompressSettings& settings, const TargetEnvironments& target,
+                    CompressReport& report) {
+    const CompressionSettings wanted = compressionSettings(settings);
+    if (settings.targetError == 0) return statistics.basis(wanted);
     std::vector<EnvironmentSh> environments;
     for (const Environment& environment : target.loaded)
         environments.push_back(
-            projectEnvironment(environment.view(), tableEnvironmentShOrder(visibility.shOrder)));
-    ChosenCompression chosen =
-        compressToError(visibility.coefficients, valid, visibility.normals, visibility.shOrder,
-                        visibility.projection, fit, environments, settings.targetError);
+            projectEnvironment(environment.view(), tableEnvironmentShOrder(rows.shOrder())));
+    ChosenBasis chosen = chooseBasis(statistics, rows.shOrder(), rows.header().projection, wanted,
+                                     environments, settings.targetError);
     for (size_t k = 0; k < target.names.size(); ++k)
         report.relitErrors.push_back({target.names[k], chosen.relitErrors[k]});
-    return std::move(chosen.compressed);
+    return std::move(chosen.pca);
 }
 
 }  // namespace
 
 CompressReport runCompress(const CompressSettings& settings) {
     const Stopwatch watch;
-    checkWeights(settings.weights);
+    checkKinds(settings);
     checkTargetError(settings.targetError);
     const Bundle bundle = Bundle::open(settings.bundlePath);
     bundle.require(kVisibility, "prt precompute");
@@ -191,35 +198,28 @@ CompressReport runCompress(const CompressSettings& settings) {
     if (!settings.force)
         if (const auto report = reportOfSame(bundle, wanted)) return *report;
 
-    VisibilityMap visibility = readVisibilityFile(bundle.pathOf(kVisibility).string());
-    if (settings.targetError == 0) checkComponents(settings.components, visibility.shOrder);
-    std::vector<uint8_t> valid(visibility.validity.size());
-    std::transform(visibility.validity.begin(), visibility.validity.end(), valid.begin(),
-                   [](Validity validity) { return uint8_t(validity == Validity::Valid); });
+    const VisibilityOnDisk rows(bundle.pathOf(kVisibility).string());
+    const VisibilityMap& header = rows.header();
+    if (settings.targetError == 0) checkComponents(settings.components, header.shOrder);
 
     CompressReport report;
-    CompressedVisibility compressed = compress(visibility, valid, settings, target, report);
-    const PcaResult& pca = compressed.pca;
-    std::vector<float>& weights = compressed.weights;
-    const PcaError error =
-        pcaError(pca, visibility.coefficients, weights, valid, shCount(visibility.shOrder));
-    for (size_t i = 0; i < visibility.validity.size(); ++i)
-        if (visibility.validity[i] == Validity::Empty)
-            std::fill_n(weights.begin() + ptrdiff_t(i) * pca.components, pca.components, 0.0f);
-    report.components = pca.components;
-    report.points = size_t(std::count(valid.begin(), valid.end(), uint8_t(1)));
-    report.explainedVariance = pca.explainedVariance;
-    report.relativeRmse = error.relativeRmse;
-    report.rmse = error.rmse;
-    report.irradianceRelativeRmse =
-        irradianceRelativeRmse(pca, visibility.coefficients, weights, visibility.normals, valid,
-                               visibility.shOrder, visibility.projection.weight);
-
-    throwIfInterrupted();
+    const VisibilityStatistics statistics(rows, header.projection);
+    const PcaResult pca = findBasis(rows, statistics, settings, target, report);
     BundleTransaction transaction(settings.bundlePath, false);
     const std::filesystem::path staged =
         transaction.stage(kPca, {{kVisibility, bundle.find(kVisibility)->xxh3}}, compressCommand(settings));
-    writePcaFile(staged.string(), makePcaMap(visibility, pca, std::move(weights), settings.weights));
+    PcaWriter writer(staged.string(), makePcaMap(header, pca, settings));
+    CompressionErrors errors;
+    compressRows(
+        rows, header.projection, pca, compressionSettings(settings).fit,
+        [&](std::span<const float> weights) { writer.write(weights); }, &errors);
+    writer.commit();
+    report.components = pca.components;
+    report.points = statistics.pointsUsed();
+    report.explainedVariance = pca.explainedVariance;
+    report.relativeRmse = errors.relativeRmse;
+    report.rmse = errors.rmse;
+    report.irradianceRelativeRmse = errors.irradianceRelativeRmse;
     report.bytes = size_t(std::filesystem::file_size(staged));
     report.seconds = watch.seconds();
     nlohmann::json section = {{"settings", nlohmann::json::parse(wanted)},

@@ -14,6 +14,9 @@ struct CompressSettings {
     /// How the weights of a point are found: "irradiance" fits the irradiance of its shading normals, "plain"
     /// projects its coefficients.
     std::string weights = "irradiance";
+    /// What the vectors are the principal ones of: "irradiance" refines them for what irradiance sees, where
+    /// weights and projection are for irradiance too; "plain" takes coefficients as they are.
+    std::string covariance = "irradiance";
     /// Above 0, in place of `components`: the least number of vectors whose relative RMSE of irradiance under
     /// every one of the environments is at most this, against the bundle's own visibility.
     double targetError = 0;
@@ -40,9 +43,10 @@ struct CompressReport {
     bool upToDate = false;                ///< the bundle had just that already: nothing was written
 };
 /// PCA of visibility.exr over valid points, weights for all points; writes pca.exr. Does nothing where
-/// pca.exr is current and was made with the same settings.
-/// @throws UsageError  components above n² (names the limit), or no such kind of weights   @throws
-/// InputError, OutputError
+/// pca.exr is current and was made with the same settings. Reads the file twice, some rows at a time: memory
+/// does not depend on their number (VisibilityOnDisk, VisibilityStatistics).
+/// @throws UsageError  components above n² (names the limit), no such kind of weights or covariance
+/// @throws InputError, OutputError
 CompressReport runCompress(const CompressSettings& settings);
 
 }  // namespace prt

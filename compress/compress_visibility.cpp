@@ -2,6 +2,8 @@
 // irradiance.
 #include "compress/compress_visibility.h"
 
+#include <algorithm>
+
 #include "compress/irradiance_weights.h"
 #include "compress/refine_basis.h"
 #include "precompute/base/check.h"
@@ -14,53 +16,119 @@ namespace prt {
 namespace {
 
 constexpr size_t kBlockPoints = 2048;
+constexpr size_t kSampledPoints = 4096;
 // Irradiance at geometric and tilted normals gains 1 to 4 % from the second and third, nothing from more.
 constexpr int kRefinements = 3;
 
-std::vector<float> cutAtHorizons(std::span<const float> rows, std::span<const Vec3f> normals, int shOrder,
-                                 const IrradianceWeight& weight) {
-    const size_t dimension = size_t(shCount(shOrder));
-    const IrradianceProjection projection(shOrder, weight);
-    std::vector<float> cut(rows.begin(), rows.end());
-    parallelFor(normals.size(), kBlockPoints, [&](size_t begin, size_t end) {
-        throwIfInterrupted();
-        for (size_t i = begin; i < end; ++i) {
-            const std::span<float> row(&cut[i * dimension], dimension);
-            const float square = normals[i].squaredNorm();
-            if (square > 0.5f && square < 2) projection.cutAtHorizon(normals[i].normalized(), row, row);
-        }
-    });
-    return cut;
-}
+// Rows as plain components are found of: cut at their horizons where they were projected for irradiance.
+class PlainRows {
+  public:
+    PlainRows(int shOrder, const Projection& projection)
+        : dimension_(size_t(shCount(shOrder))),
+          isCut_(projection.kind == ProjectionKind::Irradiance),
+          projection_(shOrder, projection.weight) {}
+
+    /// @return [P×n²] of the tile; lives until the next call
+    std::span<const float> of(const VisibilityTile& tile) {
+        if (!isCut_) return tile.rows;
+        cut_.resize(tile.rows.size());
+        parallelFor(tile.normals.size(), kBlockPoints, [&](size_t begin, size_t end) {
+            throwIfInterrupted();
+            for (size_t i = begin; i < end; ++i) {
+                const std::span<const float> row = tile.rows.subspan(i * dimension_, dimension_);
+                const std::span<float> out(&cut_[i * dimension_], dimension_);
+                const float square = tile.normals[i].squaredNorm();
+                if (square > 0.5f && square < 2)
+                    projection_.cutAtHorizon(tile.normals[i].normalized(), row, out);
+                else
+                    std::copy(row.begin(), row.end(), out.begin());
+            }
+        });
+        return cut_;
+    }
+
+  private:
+    size_t dimension_;
+    bool isCut_;
+    IrradianceProjection projection_;
+    std::vector<float> cut_;
+};
 
 }  // namespace
 
-CompressedVisibility compressVisibility(std::span<const float> rows, std::span<const uint8_t> use,
-                                        std::span<const Vec3f> normals, int shOrder,
-                                        const Projection& projection, int components, WeightsFit fit) {
-    const int dimension = shCount(shOrder);
-    PRT_CHECK_EQ(rows.size(), normals.size() * size_t(dimension));
-    std::vector<float> cut;
-    std::span<const float> plainRows = rows;
-    if (projection.kind == ProjectionKind::Irradiance) {
-        cut = cutAtHorizons(rows, normals, shOrder, projection.weight);
-        plainRows = cut;
-    }
-    CompressedVisibility result;
-    result.pca = computePca(plainRows, use, dimension, components);
-    if (fit == WeightsFit::Plain) {
-        result.weights = projectPca(result.pca, plainRows, dimension);
-        return result;
-    }
-    const IrradianceWeight& weight = projection.weight;
-    result.weights = projectPcaForIrradiance(result.pca, rows, normals, shOrder, weight);
-    if (projection.kind == ProjectionKind::Plain) return result;
+VisibilityStatistics::VisibilityStatistics(const VisibilityRows& rows, const Projection& projection)
+    : shOrder_(rows.shOrder()), projection_(projection), moments_(shCount(rows.shOrder())) {
+    const size_t dimension = size_t(shCount(shOrder_));
+    PlainRows plainRows(shOrder_, projection);
+    RowSampler sampler(kSampledPoints, dimension);
+    rows.forEachTile([&](const VisibilityTile& tile) {
+        PRT_CHECK_EQ(tile.rows.size(), tile.normals.size() * dimension);
+        moments_.add(plainRows.of(tile), tile.use, tile.rowWeights);
+        sampler.add(tile.rows, tile.normals, tile.use, tile.rowWeights);
+    });
+    sample_ = sampler.sample();
+}
+
+PcaResult VisibilityStatistics::basis(const CompressionSettings& settings) const {
+    PcaResult pca = principalComponents(moments_, settings.components);
+    if (settings.covariance == Covariance::Plain || settings.fit == WeightsFit::Plain ||
+        projection_.kind == ProjectionKind::Plain)
+        return pca;
+    const SampledRows sample = thinned(sample_, size_t(shCount(shOrder_)), mostRefinementRows(shOrder_));
+    const std::vector<double> covariance = moments_.covariance();
     for (int round = 0; round < kRefinements; ++round) {
         throwIfInterrupted();
-        result.pca =
-            refineForIrradiance(result.pca, rows, plainRows, result.weights, normals, use, shOrder, weight);
-        result.weights = projectPcaForIrradiance(result.pca, rows, normals, shOrder, weight);
+        const std::vector<float> weights =
+            projectPcaForIrradiance(pca, sample.rows, sample.normals, shOrder_, projection_.weight);
+        pca = refineForIrradiance(pca, sample.rows, weights, sample.normals, sample.rowWeights, covariance,
+                                  shOrder_, projection_.weight);
     }
+    return pca;
+}
+
+void compressRows(const VisibilityRows& rows, const Projection& projection, const PcaResult& pca,
+                  WeightsFit fit, const std::function<void(std::span<const float> weights)>& take,
+                  CompressionErrors* errors) {
+    const int dimension = shCount(rows.shOrder());
+    const size_t components = size_t(pca.components);
+    const IrradianceFit forIrradiance(pca, rows.shOrder(), projection.weight);
+    PlainRows plainRows(rows.shOrder(), projection);
+    std::vector<float> weights;
+    PcaErrorSums plain;
+    IrradianceErrorSums seen;
+    rows.forEachTile([&](const VisibilityTile& tile) {
+        throwIfInterrupted();
+        weights.resize(tile.normals.size() * components);
+        if (fit == WeightsFit::Plain)
+            projectPca(pca, plainRows.of(tile), dimension, weights);
+        else if (!errors)
+            forIrradiance.fit(tile.rows, tile.normals, weights);
+        else
+            seen += forIrradiance.fitAndSum(tile.rows, tile.normals, tile.use, tile.rowWeights, weights);
+        if (errors) {
+            plain += pcaErrorSums(pca, tile.rows, weights, tile.use, dimension, tile.rowWeights);
+            if (fit == WeightsFit::Plain)
+                seen += forIrradiance.sum(tile.rows, tile.normals, tile.use, tile.rowWeights, weights);
+        }
+        for (size_t i = 0; i < tile.surface.size(); ++i)
+            if (!tile.surface[i]) std::fill_n(&weights[i * components], components, 0.0f);
+        take(weights);
+    });
+    if (!errors) return;
+    const PcaError error = plain.result(dimension);
+    *errors = {error.relativeRmse, error.rmse, seen.relativeRmse()};
+}
+
+CompressedVisibility compressVisibility(std::span<const float> rows, std::span<const uint8_t> use,
+                                        std::span<const Vec3f> normals, int shOrder,
+                                        const Projection& projection, int components, WeightsFit fit,
+                                        Covariance covariance, std::span<const float> rowWeights) {
+    const VisibilityInMemory source(shOrder, {0, rows, normals, use, {}, rowWeights});
+    CompressedVisibility result;
+    result.pca = VisibilityStatistics(source, projection).basis({components, fit, covariance});
+    compressRows(source, projection, result.pca, fit, [&](std::span<const float> weights) {
+        result.weights.assign(weights.begin(), weights.end());
+    });
     return result;
 }
 

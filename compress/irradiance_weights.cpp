@@ -59,98 +59,142 @@ void forEachNormal(std::span<const uint32_t> points, std::span<const Vec3f> norm
     }
 }
 
-size_t checkedCount(const PcaResult& pca, std::span<const float> rows, std::span<const Vec3f> normals,
-                    int shOrder) {
+}  // namespace
+
+IrradianceErrorSums& IrradianceErrorSums::operator+=(const IrradianceErrorSums& other) {
+    error += other.error;
+    square += other.square;
+    return *this;
+}
+
+double IrradianceErrorSums::relativeRmse() const {
+    return square > 0 ? std::sqrt(std::max(0.0, error) / square) : 0.0;
+}
+
+struct IrradianceFit::State {
+    PcaResult pca;
+    int dimension;
+    IrradianceMetric metrics;
+    Eigen::MatrixXf basis;    // [M×n²]
+    Eigen::MatrixXf vectors;  // its transpose
+
+    State(const PcaResult& result, int shOrder, const IrradianceWeight& weight)
+        : pca(result),
+          dimension(shCount(shOrder)),
+          metrics(shOrder, weight),
+          basis(Eigen::Map<const RowMatrixXf>(result.basis.data(), result.components, dimension)),
+          vectors(basis.transpose()) {}
+
+    struct Points {
+        std::span<const float> rows;
+        std::span<const Vec3f> normals;
+        std::span<const uint8_t> use;
+        std::span<const float> rowWeights;
+    };
+    template <bool Fits, bool Sums, class Weight>
+    IrradianceErrorSums visit(const Points& all, std::span<Weight> weights) const;
+};
+
+// Fits weights (or takes those given), and sums what error they leave.
+template <bool Fits, bool Sums, class Weight>
+IrradianceErrorSums IrradianceFit::State::visit(const Points& all, std::span<Weight> weights) const {
+    const size_t count = all.normals.size(), d = size_t(dimension), components = size_t(pca.components);
+    PRT_CHECK_EQ(all.rows.size(), count * d);
+    PRT_CHECK_EQ(weights.size(), count * components);
+    if (!all.use.empty()) PRT_CHECK_EQ(all.use.size(), count);
+    if (!all.rowWeights.empty()) PRT_CHECK_EQ(all.rowWeights.size(), count);
+    PRT_CHECK_LE(count, size_t(UINT32_MAX));
+    const Eigen::Map<const Eigen::VectorXf> mean(pca.mean.data(), dimension);
+    const std::vector<uint32_t> points = pointsByNormal(all.normals);
+    std::vector<IrradianceErrorSums> partial((count + kBlockPoints - 1) / kBlockPoints);
+    parallelFor(count, kBlockPoints, [&](size_t begin, size_t end) {
+        throwIfInterrupted();
+        IrradianceErrorSums& sums = partial[begin / kBlockPoints];
+        Eigen::MatrixXf metric(dimension, dimension), projection, fit, gram;
+        Eigen::VectorXf error(dimension), product(dimension), fitted(pca.components);
+        Eigen::LLT<Eigen::MatrixXf> cholesky(pca.components);
+        forEachNormal(points, all.normals, begin, end, [&](size_t first, size_t last) {
+            metrics.evaluate(all.normals[points[first]], {metric.data(), size_t(metric.size())});
+            if constexpr (Fits) {
+                projection.noalias() = basis * metric;
+                gram.noalias() = projection * vectors;
+                cholesky.compute(gram);
+                fit = cholesky.solve(projection);
+            }
+            // One by one: the bits of a weight then depend on its own point alone.
+            for (size_t k = first; k < last; ++k) {
+                const size_t point = points[k];
+                const Eigen::Map<const Eigen::VectorXf> row(all.rows.data() + point * d, dimension);
+                error = row - mean;
+                if constexpr (Fits) {
+                    fitted.noalias() = fit * error;
+                    std::copy_n(fitted.data(), components, weights.data() + point * components);
+                } else {
+                    fitted = Eigen::Map<const Eigen::VectorXf>(weights.data() + point * components,
+                                                               pca.components);
+                }
+                if (!Sums || (!all.use.empty() && !all.use[point])) continue;
+                const double counts = all.rowWeights.empty() ? 1.0 : double(all.rowWeights[point]);
+                error.noalias() -= vectors * fitted;
+                product.noalias() = metric * error;
+                sums.error += counts * double(error.dot(product));
+                product.noalias() = metric * row;
+                sums.square += counts * double(row.dot(product));
+            }
+        });
+    });
+    IrradianceErrorSums total;
+    for (const IrradianceErrorSums& sums : partial) total += sums;
+    return total;
+}
+
+IrradianceFit::IrradianceFit(const PcaResult& pca, int shOrder, const IrradianceWeight& weight) {
     const size_t dimension = size_t(shCount(shOrder));
     PRT_CHECK_EQ(pca.mean.size(), dimension);
     PRT_CHECK_EQ(pca.basis.size(), dimension * size_t(pca.components));
-    PRT_CHECK_EQ(rows.size(), normals.size() * dimension);
-    PRT_CHECK_LE(normals.size(), size_t(UINT32_MAX));
-    return normals.size();
+    state_ = std::make_unique<State>(pca, shOrder, weight);
 }
 
-}  // namespace
+IrradianceFit::~IrradianceFit() = default;
+
+void IrradianceFit::fit(std::span<const float> rows, std::span<const Vec3f> normals,
+                        std::span<float> weights) const {
+    if (state_->pca.components < state_->dimension) {
+        state_->visit<true, false>({rows, normals, {}, {}}, weights);
+        return;
+    }
+    // There is nothing to trade.
+    PRT_CHECK_EQ(rows.size(), normals.size() * size_t(state_->dimension));
+    projectPca(state_->pca, rows, state_->dimension, weights);
+}
+
+IrradianceErrorSums IrradianceFit::fitAndSum(std::span<const float> rows, std::span<const Vec3f> normals,
+                                             std::span<const uint8_t> use, std::span<const float> rowWeights,
+                                             std::span<float> weights) const {
+    if (state_->pca.components < state_->dimension)
+        return state_->visit<true, true>({rows, normals, use, rowWeights}, weights);
+    fit(rows, normals, weights);
+    return sum(rows, normals, use, rowWeights, weights);
+}
+
+IrradianceErrorSums IrradianceFit::sum(std::span<const float> rows, std::span<const Vec3f> normals,
+                                       std::span<const uint8_t> use, std::span<const float> rowWeights,
+                                       std::span<const float> weights) const {
+    return state_->visit<false, true>({rows, normals, use, rowWeights}, weights);
+}
 
 std::vector<float> projectPcaForIrradiance(const PcaResult& pca, std::span<const float> rows,
                                            std::span<const Vec3f> normals, int shOrder,
                                            const IrradianceWeight& weight) {
-    const size_t count = checkedCount(pca, rows, normals, shOrder);
-    const int dimension = shCount(shOrder);
-    if (pca.components == dimension) return projectPca(pca, rows, dimension);  // there is nothing to trade
-    const Eigen::MatrixXf basis = Eigen::Map<const RowMatrixXf>(pca.basis.data(), pca.components, dimension);
-    const Eigen::Map<const Eigen::VectorXf> mean(pca.mean.data(), dimension);
-    const IrradianceMetric metrics(shOrder, weight);
-    const std::vector<uint32_t> points = pointsByNormal(normals);
-    std::vector<float> result(count * size_t(pca.components));
-    parallelFor(count, kBlockPoints, [&](size_t begin, size_t end) {
-        throwIfInterrupted();
-        Eigen::MatrixXf metric(dimension, dimension), projection, fit, gram;
-        Eigen::VectorXf row(dimension), fitted(pca.components);
-        Eigen::LLT<Eigen::MatrixXf> cholesky(pca.components);
-        forEachNormal(points, normals, begin, end, [&](size_t first, size_t last) {
-            metrics.evaluate(normals[points[first]], {metric.data(), size_t(metric.size())});
-            projection.noalias() = basis * metric;
-            gram.noalias() = projection * basis.transpose();
-            cholesky.compute(gram);
-            fit = cholesky.solve(projection);
-            // One by one: the bits of a weight then depend on its own point alone.
-            for (size_t k = first; k < last; ++k) {
-                const size_t point = points[k];
-                row = Eigen::Map<const Eigen::VectorXf>(rows.data() + point * size_t(dimension), dimension) -
-                      mean;
-                fitted.noalias() = fit * row;
-                std::copy_n(fitted.data(), pca.components, result.data() + point * size_t(pca.components));
-            }
-        });
-    });
+    std::vector<float> result(normals.size() * size_t(pca.components));
+    IrradianceFit(pca, shOrder, weight).fit(rows, normals, result);
     return result;
 }
 
 double irradianceRelativeRmse(const PcaResult& pca, std::span<const float> rows,
                               std::span<const float> weights, std::span<const Vec3f> normals,
                               std::span<const uint8_t> use, int shOrder, const IrradianceWeight& weight) {
-    const size_t count = checkedCount(pca, rows, normals, shOrder);
-    PRT_CHECK_EQ(weights.size(), count * size_t(pca.components));
-    if (!use.empty()) PRT_CHECK_EQ(use.size(), count);
-    const int dimension = shCount(shOrder);
-    const Eigen::MatrixXf vectors =
-        Eigen::Map<const RowMatrixXf>(pca.basis.data(), pca.components, dimension).transpose();
-    const Eigen::Map<const Eigen::VectorXf> mean(pca.mean.data(), dimension);
-    const IrradianceMetric metrics(shOrder, weight);
-    const std::vector<uint32_t> points = pointsByNormal(normals);
-    struct Sums {
-        double error = 0, square = 0;
-    };
-    std::vector<Sums> partial((count + kBlockPoints - 1) / kBlockPoints);
-    parallelFor(count, kBlockPoints, [&](size_t begin, size_t end) {
-        throwIfInterrupted();
-        Sums& sums = partial[begin / kBlockPoints];
-        Eigen::MatrixXf metric(dimension, dimension);
-        Eigen::VectorXf error(dimension), product(dimension);
-        forEachNormal(points, normals, begin, end, [&](size_t first, size_t last) {
-            metrics.evaluate(normals[points[first]], {metric.data(), size_t(metric.size())});
-            for (size_t k = first; k < last; ++k) {
-                const size_t point = points[k];
-                if (!use.empty() && !use[point]) continue;
-                const Eigen::Map<const Eigen::VectorXf> row(rows.data() + point * size_t(dimension),
-                                                            dimension);
-                const Eigen::Map<const Eigen::VectorXf> fitted(
-                    weights.data() + point * size_t(pca.components), pca.components);
-                error = row - mean;
-                error.noalias() -= vectors * fitted;
-                product.noalias() = metric * error;
-                sums.error += double(error.dot(product));
-                product.noalias() = metric * row;
-                sums.square += double(row.dot(product));
-            }
-        });
-    });
-    Sums total;
-    for (const Sums& sums : partial) {
-        total.error += sums.error;
-        total.square += sums.square;
-    }
-    return total.square > 0 ? std::sqrt(std::max(0.0, total.error) / total.square) : 0.0;
+    return IrradianceFit(pca, shOrder, weight).sum(rows, normals, use, {}, weights).relativeRmse();
 }
 
 }  // namespace prt

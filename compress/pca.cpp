@@ -1,4 +1,5 @@
-// Principal component analysis of visibility, the compression of [IwanickiSloan2012, Sec. 4].
+// Principal component analysis of visibility, the compression of [IwanickiSloan2012, Sec. 4], with moments of
+// parts joined as in [ChanGolubLeVeque1983].
 //
 // The covariance is summed in float over blocks of 1024 rows (fast, and exact enough over so few) and in
 // double over blocks: plain float sums put small eigenvalues off by parts in a thousand.
@@ -21,8 +22,11 @@ namespace {
 constexpr size_t kBlockRows = 1024;
 // Rows that one task sums: their partial sums are added in order, whatever the number of threads.
 constexpr size_t kTaskRows = 16 * kBlockRows;
+// Tasks between two joins: bounds the memory that partial sums take.
+constexpr size_t kRoundTasks = 64;
 
 using RowMatrixXf = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+using RowMatrixXd = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 size_t rowCount(std::span<const float> rows, std::span<const uint8_t> use, int dimension) {
     PRT_CHECK_LE(1, dimension);
@@ -36,135 +40,243 @@ auto rowAt(std::span<const float> rows, size_t index, int dimension) {
     return Eigen::Map<const Eigen::VectorXf>(rows.data() + index * size_t(dimension), dimension);
 }
 
-std::vector<size_t> rowsInUse(std::span<const float> rows, std::span<const uint8_t> use, int dimension) {
-    const size_t count = rowCount(rows, use, dimension);
-    std::vector<size_t> indices;
-    indices.reserve(count);
-    for (size_t i = 0; i < count; ++i)
-        if (use.empty() || use[i]) indices.push_back(i);
-    if (indices.empty())
-        throw InputError("visibility coefficients", fmt::format("none of {} points is valid", count),
-                         "bake a mesh with at least one visible surface point");
-    return indices;
-}
-
-// Roughly the mean: subtracted before squaring, so that the covariance is no small difference of large sums.
-Eigen::VectorXf provisionalMean(std::span<const float> rows, std::span<const size_t> indices, int dimension) {
-    const size_t step = std::max<size_t>(1, indices.size() / kBlockRows);
-    Eigen::VectorXd sum = Eigen::VectorXd::Zero(dimension);
-    size_t taken = 0;
-    for (size_t k = 0; k < indices.size(); k += step, ++taken)
-        sum += rowAt(rows, indices[k], dimension).cast<double>();
-    return (sum / double(taken)).cast<float>();
-}
-
 struct Moments {
-    Eigen::VectorXd sum;      // Σ (x − provisional mean)
-    Eigen::MatrixXd squares;  // Σ (x − provisional mean)(x − provisional mean)ᵀ, lower triangle
+    double weight = 0;
+    Eigen::VectorXd mean;
+    Eigen::MatrixXd squares;  // Σ a (x − mean)(x − mean)ᵀ, lower triangle
+
+    explicit Moments(int dimension)
+        : mean(Eigen::VectorXd::Zero(dimension)), squares(Eigen::MatrixXd::Zero(dimension, dimension)) {}
+
+    void join(const Moments& other) {
+        if (other.weight <= 0) return;
+        const double total = weight + other.weight;
+        const Eigen::VectorXd delta = other.mean - mean;
+        squares += other.squares;
+        squares.selfadjointView<Eigen::Lower>().rankUpdate(delta, weight * (other.weight / total));
+        mean += delta * (other.weight / total);
+        weight = total;
+    }
+};
+
+// Scratch of the sums of one block.
+struct Block {
+    Eigen::MatrixXf centred, product;
+    Moments moments;
+
+    Block(int dimension, size_t rows)
+        : centred(dimension, Eigen::Index(rows)), product(dimension, dimension), moments(dimension) {}
+
+    void sum(std::span<const float> rows, std::span<const size_t> indices,
+             std::span<const float> rowWeights) {
+        const int dimension = int(product.rows());
+        moments.weight = 0;
+        moments.mean.setZero();
+        for (const size_t index : indices) {
+            const double weight = rowWeights.empty() ? 1.0 : double(rowWeights[index]);
+            moments.weight += weight;
+            moments.mean += weight * rowAt(rows, index, dimension).cast<double>();
+        }
+        if (moments.weight <= 0) return;
+        moments.mean /= moments.weight;
+        const Eigen::VectorXf about = moments.mean.cast<float>();
+        for (size_t k = 0; k < indices.size(); ++k) {
+            auto column = centred.col(Eigen::Index(k));
+            column = rowAt(rows, indices[k], dimension) - about;
+            if (!rowWeights.empty()) column *= std::sqrt(rowWeights[indices[k]]);
+        }
+        product.setZero();
+        product.selfadjointView<Eigen::Lower>().rankUpdate(centred.leftCols(Eigen::Index(indices.size())));
+        moments.squares = product.cast<double>();
+        // The mean has more digits than what was subtracted.
+        const Eigen::VectorXd rounding = moments.mean - about.cast<double>();
+        moments.squares.selfadjointView<Eigen::Lower>().rankUpdate(rounding, -moments.weight);
+    }
 };
 
 Moments momentsOf(std::span<const float> rows, std::span<const size_t> indices,
-                  const Eigen::VectorXf& provisional) {
-    const int dimension = int(provisional.size());
-    Moments moments{Eigen::VectorXd::Zero(dimension), Eigen::MatrixXd::Zero(dimension, dimension)};
-    Eigen::MatrixXf block(dimension, Eigen::Index(std::min(kBlockRows, indices.size())));
-    Eigen::MatrixXf product(dimension, dimension);
+                  std::span<const float> rowWeights, int dimension) {
+    Moments total(dimension);
+    Block block(dimension, std::min(kBlockRows, indices.size()));
     for (size_t first = 0; first < indices.size(); first += kBlockRows) {
-        const size_t count = std::min(kBlockRows, indices.size() - first);
-        for (size_t k = 0; k < count; ++k) {
-            block.col(Eigen::Index(k)) = rowAt(rows, indices[first + k], dimension) - provisional;
-            moments.sum += block.col(Eigen::Index(k)).cast<double>();
-        }
-        product.setZero();
-        product.selfadjointView<Eigen::Lower>().rankUpdate(block.leftCols(Eigen::Index(count)));
-        moments.squares += product.cast<double>();
+        block.sum(rows, indices.subspan(first, std::min(kBlockRows, indices.size() - first)), rowWeights);
+        total.join(block.moments);
     }
-    return moments;
-}
-
-// Partial sums of all tasks, added in order.
-Moments totalMoments(std::span<const float> rows, std::span<const size_t> indices,
-                     const Eigen::VectorXf& provisional) {
-    const size_t tasks = (indices.size() + kTaskRows - 1) / kTaskRows;
-    std::vector<Moments> partial(tasks);
-    parallelFor(indices.size(), kTaskRows, [&](size_t begin, size_t end) {
-        partial[begin / kTaskRows] = momentsOf(rows, indices.subspan(begin, end - begin), provisional);
-    });
-    for (size_t task = 1; task < tasks; ++task) {
-        partial[0].sum += partial[task].sum;
-        partial[0].squares += partial[task].squares;
-    }
-    return partial[0];
+    return total;
 }
 
 [[noreturn]] void throwNotFinite(std::span<const float> rows, std::span<const size_t> indices,
-                                 int dimension) {
+                                 size_t firstIndex, int dimension) {
     for (const size_t index : indices)
         if (!rowAt(rows, index, dimension).allFinite())
-            throw InputError("visibility coefficients", fmt::format("point {} is not a finite number", index),
+            throw InputError("visibility coefficients",
+                             fmt::format("point {} is not a finite number", firstIndex + index),
                              "bake the mesh again");
     throw InputError("visibility coefficients", "values are too large to be squared",
                      "bake the mesh again; coefficients of visibility are below 4");
 }
 
+// Orthonormal vectors as rows; the largest entry of each made positive.
+void setBasis(PcaResult& pca, RowMatrixXf basis) {
+    for (Eigen::Index m = 0; m < basis.rows(); ++m) {
+        Eigen::Index largest = 0;
+        basis.row(m).cwiseAbs().maxCoeff(&largest);
+        if (basis(m, largest) < 0) basis.row(m) *= -1;
+    }
+    pca.basis.assign(basis.data(), basis.data() + basis.size());
+}
+
+void setVariance(PcaResult& pca, const std::vector<double>& values) {
+    pca.variance.assign(values.begin(), values.end());
+    double explained = 0;
+    for (const double value : values) explained += value;
+    pca.explainedVariance = pca.totalVariance > 0 ? std::min(1.0, explained / pca.totalVariance) : 1.0;
+}
+
 }  // namespace
 
-PcaResult computePca(std::span<const float> rows, std::span<const uint8_t> use, int dimension,
-                     int components) {
+struct RowMoments::State {
+    size_t seen = 0, used = 0;
+    Moments moments;
+    explicit State(int dimension) : moments(dimension) {}
+};
+
+RowMoments::RowMoments(int dimension) : state_(std::make_unique<State>(dimension)) {
+    PRT_CHECK_LE(1, dimension);
+}
+RowMoments::~RowMoments() = default;
+RowMoments::RowMoments(RowMoments&&) noexcept = default;
+
+int RowMoments::dimension() const { return int(state_->moments.mean.size()); }
+size_t RowMoments::rowsSeen() const { return state_->seen; }
+size_t RowMoments::rowsUsed() const { return state_->used; }
+double RowMoments::weight() const { return state_->moments.weight; }
+
+void RowMoments::add(std::span<const float> rows, std::span<const uint8_t> use,
+                     std::span<const float> rowWeights) {
+    const int d = dimension();
+    const size_t count = rowCount(rows, use, d);
+    if (!rowWeights.empty()) PRT_CHECK_EQ(rowWeights.size(), count);
+    std::vector<size_t> indices;
+    for (size_t next = 0; next < count;) {
+        throwIfInterrupted();
+        indices.clear();
+        for (; next < count && indices.size() < kRoundTasks * kTaskRows; ++next)
+            if (use.empty() || use[next]) indices.push_back(next);
+        std::vector<Moments> partial((indices.size() + kTaskRows - 1) / kTaskRows, Moments(d));
+        parallelFor(indices.size(), kTaskRows, [&](size_t begin, size_t end) {
+            partial[begin / kTaskRows] =
+                momentsOf(rows, std::span(indices).subspan(begin, end - begin), rowWeights, d);
+        });
+        for (size_t task = 0; task < partial.size(); ++task) {
+            if (!partial[task].mean.allFinite() || !partial[task].squares.allFinite())
+                throwNotFinite(rows, std::span(indices).subspan(task * kTaskRows), state_->seen, d);
+            state_->moments.join(partial[task]);
+        }
+        state_->used += indices.size();
+    }
+    state_->seen += count;
+}
+
+std::vector<double> RowMoments::mean() const {
+    PRT_CHECK(weight() > 0);
+    const Eigen::VectorXd& mean = state_->moments.mean;
+    return {mean.data(), mean.data() + mean.size()};
+}
+
+std::vector<double> RowMoments::covariance() const {
+    PRT_CHECK(weight() > 0);
+    Eigen::MatrixXd covariance = state_->moments.squares.selfadjointView<Eigen::Lower>();
+    covariance /= weight();
+    return {covariance.data(), covariance.data() + covariance.size()};
+}
+
+PcaResult principalComponents(const RowMoments& moments, int components) {
+    const int dimension = moments.dimension();
     PRT_CHECK_LE(1, components);
     PRT_CHECK_LE(components, dimension);
-    const std::vector<size_t> indices = rowsInUse(rows, use, dimension);
-    const Eigen::VectorXf provisional = provisionalMean(rows, indices, dimension);
-    Moments moments = totalMoments(rows, indices, provisional);
-
-    const double count = double(indices.size());
-    const Eigen::VectorXd shift = moments.sum / count;
-    Eigen::MatrixXd covariance = moments.squares.selfadjointView<Eigen::Lower>();
-    covariance = covariance / count - shift * shift.transpose();
-    if (!covariance.allFinite()) throwNotFinite(rows, indices, dimension);
-
-    const LeadingVectors leading =
-        leadingVectors({covariance.data(), size_t(covariance.size())}, dimension, components);
+    if (moments.rowsUsed() == 0)
+        throw InputError("visibility coefficients",
+                         fmt::format("none of {} points is valid", moments.rowsSeen()),
+                         "bake a mesh with at least one visible surface point");
+    if (moments.weight() <= 0)
+        throw InputError("visibility coefficients",
+                         fmt::format("all {} valid points have the weight zero", moments.rowsUsed()),
+                         "compress without weights");
+    const std::vector<double> mean = moments.mean(), covariance = moments.covariance();
+    const LeadingVectors leading = leadingVectors(covariance, dimension, components);
     PcaResult result;
     result.components = components;
-    result.mean.resize(size_t(dimension));
-    Eigen::Map<Eigen::VectorXf>(result.mean.data(), dimension) =
-        (provisional.cast<double>() + shift).cast<float>();
+    result.mean.assign(mean.begin(), mean.end());
     result.basis.assign(leading.vectors.begin(), leading.vectors.end());
-    result.variance.assign(leading.values.begin(), leading.values.end());
-    result.totalVariance = std::max(0.0, covariance.trace());
-    double explained = 0;
-    for (const double value : leading.values) explained += value;
-    result.explainedVariance =
-        result.totalVariance > 0 ? std::min(1.0, explained / result.totalVariance) : 1.0;
+    for (size_t k = 0; k < mean.size(); ++k) result.totalVariance += covariance[k * (mean.size() + 1)];
+    setVariance(result, leading.values);
     return result;
 }
 
+PcaResult alignToCovariance(const PcaResult& pca, std::span<const double> covariance) {
+    const Eigen::Index dimension = Eigen::Index(pca.mean.size());
+    PRT_CHECK_EQ(covariance.size(), pca.mean.size() * pca.mean.size());
+    const RowMatrixXd basis =
+        Eigen::Map<const RowMatrixXf>(pca.basis.data(), pca.components, dimension).cast<double>();
+    const Eigen::Map<const RowMatrixXd> all(covariance.data(), dimension, dimension);
+    const RowMatrixXd within = basis * all * basis.transpose();
+    const LeadingVectors axes =
+        leadingVectors({within.data(), size_t(within.size())}, pca.components, pca.components);
+    PcaResult result = pca;
+    setBasis(result,
+             (Eigen::Map<const RowMatrixXd>(axes.vectors.data(), pca.components, pca.components) * basis)
+                 .cast<float>());
+    setVariance(result, axes.values);
+    return result;
+}
+
+PcaResult computePca(std::span<const float> rows, std::span<const uint8_t> use, int dimension, int components,
+                     std::span<const float> rowWeights) {
+    RowMoments moments(dimension);
+    moments.add(rows, use, rowWeights);
+    return principalComponents(moments, components);
+}
+
 std::vector<float> projectPca(const PcaResult& pca, std::span<const float> rows, int dimension) {
+    std::vector<float> weights(rowCount(rows, {}, dimension) * size_t(pca.components));
+    projectPca(pca, rows, dimension, weights);
+    return weights;
+}
+
+void projectPca(const PcaResult& pca, std::span<const float> rows, int dimension, std::span<float> weights) {
     const size_t count = rowCount(rows, {}, dimension);
+    PRT_CHECK_EQ(weights.size(), count * size_t(pca.components));
     const Eigen::Map<const RowMatrixXf> basis(pca.basis.data(), pca.components, dimension);
     const Eigen::Map<const Eigen::RowVectorXf> mean(pca.mean.data(), dimension);
-    std::vector<float> weights(count * size_t(pca.components));
     parallelFor(count, kBlockRows, [&](size_t begin, size_t end) {
         const auto size = Eigen::Index(end - begin);
         const Eigen::Map<const RowMatrixXf> block(rows.data() + begin * size_t(dimension), size, dimension);
         Eigen::Map<RowMatrixXf> out(weights.data() + begin * size_t(pca.components), size, pca.components);
         out.noalias() = (block.rowwise() - mean) * basis.transpose();
     });
-    return weights;
 }
 
-PcaError pcaError(const PcaResult& pca, std::span<const float> rows, std::span<const float> weights,
-                  std::span<const uint8_t> use, int dimension) {
+PcaErrorSums& PcaErrorSums::operator+=(const PcaErrorSums& other) {
+    error += other.error;
+    square += other.square;
+    weight += other.weight;
+    return *this;
+}
+
+PcaError PcaErrorSums::result(int dimension) const {
+    return {square > 0 ? std::sqrt(error / square) : 0.0,
+            weight > 0 ? std::sqrt(error / (weight * dimension)) : 0.0};
+}
+
+PcaErrorSums pcaErrorSums(const PcaResult& pca, std::span<const float> rows, std::span<const float> weights,
+                          std::span<const uint8_t> use, int dimension, std::span<const float> rowWeights) {
     const size_t count = rowCount(rows, use, dimension);
     PRT_CHECK_EQ(weights.size(), count * size_t(pca.components));
+    if (!rowWeights.empty()) PRT_CHECK_EQ(rowWeights.size(), count);
     const Eigen::Map<const RowMatrixXf> basis(pca.basis.data(), pca.components, dimension);
     const Eigen::Map<const Eigen::RowVectorXf> mean(pca.mean.data(), dimension);
-    struct Sums {
-        double error = 0, square = 0;
-        size_t rows = 0;
-    };
-    std::vector<Sums> partial((count + kBlockRows - 1) / kBlockRows);
+    std::vector<PcaErrorSums> partial((count + kBlockRows - 1) / kBlockRows);
     parallelFor(count, kBlockRows, [&](size_t begin, size_t end) {
         const auto size = Eigen::Index(end - begin);
         const Eigen::Map<const RowMatrixXf> block(rows.data() + begin * size_t(dimension), size, dimension);
@@ -172,24 +284,23 @@ PcaError pcaError(const PcaResult& pca, std::span<const float> rows, std::span<c
                                                    pca.components);
         RowMatrixXf difference = block.rowwise() - mean;
         difference.noalias() -= weight * basis;
-        Sums& sums = partial[begin / kBlockRows];
+        PcaErrorSums& sums = partial[begin / kBlockRows];
         for (size_t i = begin; i < end; ++i) {
             if (!use.empty() && !use[i]) continue;
-            sums.error += difference.row(Eigen::Index(i - begin)).cast<double>().squaredNorm();
-            sums.square += block.row(Eigen::Index(i - begin)).cast<double>().squaredNorm();
-            ++sums.rows;
+            const double counts = rowWeights.empty() ? 1.0 : double(rowWeights[i]);
+            sums.error += counts * difference.row(Eigen::Index(i - begin)).cast<double>().squaredNorm();
+            sums.square += counts * block.row(Eigen::Index(i - begin)).cast<double>().squaredNorm();
+            sums.weight += counts;
         }
     });
-    Sums total;
-    for (const Sums& sums : partial) {
-        total.error += sums.error;
-        total.square += sums.square;
-        total.rows += sums.rows;
-    }
-    PcaError error;
-    if (total.square > 0) error.relativeRmse = std::sqrt(total.error / total.square);
-    if (total.rows > 0) error.rmse = std::sqrt(total.error / (double(total.rows) * dimension));
-    return error;
+    PcaErrorSums total;
+    for (const PcaErrorSums& sums : partial) total += sums;
+    return total;
+}
+
+PcaError pcaError(const PcaResult& pca, std::span<const float> rows, std::span<const float> weights,
+                  std::span<const uint8_t> use, int dimension) {
+    return pcaErrorSums(pca, rows, weights, use, dimension).result(dimension);
 }
 
 double pcaRelativeRmse(const PcaResult& pca, std::span<const float> rows, std::span<const float> weights,

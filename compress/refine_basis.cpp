@@ -9,7 +9,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "compress/leading_vectors.h"
 #include "precompute/base/check.h"
 #include "precompute/base/error.h"
 #include "precompute/base/parallel.h"
@@ -30,17 +29,6 @@ constexpr double kLargestStep = 2;
 
 using RowMatrixXf = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 using RowMatrixXd = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-
-std::vector<size_t> sampledRows(std::span<const uint8_t> use, size_t count, int dimension) {
-    std::vector<size_t> all;
-    for (size_t i = 0; i < count; ++i)
-        if (use.empty() || use[i]) all.push_back(i);
-    const size_t most = std::min(kMostPoints, kMetricFloats / size_t(dimension * dimension));
-    if (all.size() <= most) return all;
-    std::vector<size_t> sample(most);
-    for (size_t k = 0; k < most; ++k) sample[k] = all[k * all.size() / most];
-    return sample;
-}
 
 // a · b with sums over chunks of the inner index in double; columns of b are dealt to tasks.
 Eigen::MatrixXd product(const Eigen::MatrixXf& a, const Eigen::MatrixXf& b) {
@@ -65,25 +53,28 @@ struct Sample {
     Eigen::MatrixXf coefficients;  // [P × (M+1)] 1, then the weights
 };
 
-Sample takeSample(std::span<const size_t> points, std::span<const float> rows, std::span<const float> weights,
-                  std::span<const Vec3f> normals, int components, int shOrder,
+Sample takeSample(std::span<const float> rows, std::span<const float> weights, std::span<const Vec3f> normals,
+                  std::span<const float> rowWeights, int components, int shOrder,
                   const IrradianceWeight& weight) {
-    const Eigen::Index dimension = shCount(shOrder), count = Eigen::Index(points.size());
+    const Eigen::Index dimension = shCount(shOrder), count = Eigen::Index(normals.size());
+    double total = 0;
+    for (const float one : rowWeights) total += double(one);
+    const float scale = total > 0 ? float(double(rowWeights.size()) / total) : 1.0f;
     Sample sample{Eigen::MatrixXf(dimension * dimension, count), Eigen::MatrixXf(dimension, count),
                   Eigen::MatrixXf(count, components + 1)};
     const IrradianceMetric metrics(shOrder, weight);
-    parallelFor(points.size(), size_t(kChunkPoints), [&](size_t begin, size_t end) {
+    parallelFor(normals.size(), size_t(kChunkPoints), [&](size_t begin, size_t end) {
         for (size_t k = begin; k < end; ++k) {
             const auto column = Eigen::Index(k);
-            metrics.evaluate(normals[points[k]],
-                             {sample.metric.col(column).data(), size_t(dimension * dimension)});
+            metrics.evaluate(normals[k], {sample.metric.col(column).data(), size_t(dimension * dimension)});
+            if (!rowWeights.empty()) sample.metric.col(column) *= scale * rowWeights[k];
             const Eigen::Map<const Eigen::MatrixXf> metric(sample.metric.col(column).data(), dimension,
                                                            dimension);
             sample.weighted.col(column).noalias() =
-                metric * Eigen::Map<const Eigen::VectorXf>(&rows[points[k] * size_t(dimension)], dimension);
+                metric * Eigen::Map<const Eigen::VectorXf>(&rows[k * size_t(dimension)], dimension);
             sample.coefficients(column, 0) = 1;
             sample.coefficients.row(column).tail(components) =
-                Eigen::Map<const Eigen::RowVectorXf>(&weights[points[k] * size_t(components)], components);
+                Eigen::Map<const Eigen::RowVectorXf>(&weights[k * size_t(components)], components);
         }
     });
     return sample;
@@ -111,43 +102,30 @@ RowMatrixXd solveBasis(const Sample& sample, const RowMatrixXd& start) {
     return Eigen::Map<const RowMatrixXd>(solution.data(), vectors, dimension);
 }
 
-// Turns an orthonormal basis within its span to the principal axes of the rows in use.
-void alignToRows(PcaResult& pca, std::span<const float> rows, std::span<const uint8_t> use, int dimension) {
-    const std::vector<float> projected = projectPca(pca, rows, dimension);
-    const PcaResult axes = computePca(projected, use, pca.components, pca.components);
-    RowMatrixXf basis = Eigen::Map<const RowMatrixXf>(pca.basis.data(), pca.components, dimension);
-    basis = Eigen::Map<const RowMatrixXf>(axes.basis.data(), pca.components, pca.components) * basis;
-    for (Eigen::Index m = 0; m < basis.rows(); ++m) {
-        Eigen::Index largest = 0;
-        basis.row(m).cwiseAbs().maxCoeff(&largest);
-        if (basis(m, largest) < 0) basis.row(m) *= -1;
-    }
-    std::copy_n(basis.data(), basis.size(), pca.basis.begin());
-    pca.variance = axes.variance;
-    double explained = 0;
-    for (const float variance : pca.variance) explained += double(variance);
-    if (pca.totalVariance > 0) pca.explainedVariance = std::min(1.0, explained / pca.totalVariance);
-}
-
 }  // namespace
 
+size_t mostRefinementRows(int shOrder) {
+    const size_t dimension = size_t(shCount(shOrder));
+    return std::min(kMostPoints, kMetricFloats / (dimension * dimension));
+}
+
 PcaResult refineForIrradiance(const PcaResult& pca, std::span<const float> rows,
-                              std::span<const float> plainRows, std::span<const float> weights,
-                              std::span<const Vec3f> normals, std::span<const uint8_t> use, int shOrder,
-                              const IrradianceWeight& weight) {
+                              std::span<const float> weights, std::span<const Vec3f> normals,
+                              std::span<const float> rowWeights, std::span<const double> covariance,
+                              int shOrder, const IrradianceWeight& weight) {
     const int dimension = shCount(shOrder);
     PRT_CHECK_EQ(pca.mean.size(), size_t(dimension));
     PRT_CHECK_EQ(rows.size(), normals.size() * size_t(dimension));
-    PRT_CHECK_EQ(plainRows.size(), rows.size());
     PRT_CHECK_EQ(weights.size(), normals.size() * size_t(pca.components));
+    PRT_CHECK_LE(normals.size(), mostRefinementRows(shOrder));
+    if (!rowWeights.empty()) PRT_CHECK_EQ(rowWeights.size(), normals.size());
     if ((pca.components + 1) * dimension > kMostRefinedValues || pca.components == dimension) return pca;
     RowMatrixXd start(pca.components + 1, dimension);
     start.row(0) = Eigen::Map<const Eigen::RowVectorXf>(pca.mean.data(), dimension).cast<double>();
     start.bottomRows(pca.components) =
         Eigen::Map<const RowMatrixXf>(pca.basis.data(), pca.components, dimension).cast<double>();
-    const RowMatrixXd solved = solveBasis(takeSample(sampledRows(use, normals.size(), dimension), rows,
-                                                     weights, normals, pca.components, shOrder, weight),
-                                          start);
+    const RowMatrixXd solved =
+        solveBasis(takeSample(rows, weights, normals, rowWeights, pca.components, shOrder, weight), start);
     // Rows of fewer dimensions than vectors leave some of these to rounding.
     if (!solved.allFinite() || (solved - start).norm() > kLargestStep * start.norm()) return pca;
     const Eigen::MatrixXd vectors = solved.bottomRows(pca.components).transpose();
@@ -157,8 +135,7 @@ PcaResult refineForIrradiance(const PcaResult& pca, std::span<const float> rows,
     Eigen::Map<Eigen::RowVectorXf>(result.mean.data(), dimension) = solved.row(0).cast<float>();
     Eigen::Map<RowMatrixXf>(result.basis.data(), pca.components, dimension) =
         orthonormal.transpose().cast<float>();
-    alignToRows(result, plainRows, use, dimension);
-    return result;
+    return alignToCovariance(result, covariance);
 }
 
 }  // namespace prt

@@ -1,7 +1,7 @@
 // Principal vectors moved towards what irradiance sees.
 #pragma once
 
-#include <cstdint>
+#include <cstddef>
 #include <span>
 #include <vector>
 
@@ -13,17 +13,24 @@ namespace prt {
 /// (M + 1)·n² above which vectors stay as they are: so many of them leave nothing to gain.
 inline constexpr int kMostRefinedValues = 2048;
 
-/// One step of alternating least squares: the mean and basis that minimise Σ_p e_pᵀ A(n_p) e_p,
-/// e_p = row_p − mean − Σ_m w_pm basis_m, for the weights that `pca` has; from a sample of the rows in use.
+/// Rows that a step looks at, at most: no more make a better basis, and their metrics take memory.
+size_t mostRefinementRows(int shOrder);
+
+/// One step of alternating least squares: the mean and basis that minimise Σ_p a_p e_pᵀ A(n_p) e_p,
+/// e_p = row_p − mean − Σ_m w_pm basis_m, for the weights that `pca` has.
 /// More than three steps lower this sum further, but no longer errors under real light.
-/// @param pca        basis orthonormal
-/// @param rows       [N×n²]   @param plainRows  [N×n²] what variances are of
-/// @param weights    [N×M] of pca for rows, as projectPcaForIrradiance finds them
-/// @return mean, and basis orthonormal along the principal axes of plainRows in its span; variances of these
+/// @param pca         basis orthonormal
+/// @param rows        [P×n²] a sample of the rows, mostRefinementRows() at most
+/// @param weights     [P×M] of pca for rows, as projectPcaForIrradiance finds them
+/// @param normals     [P] geometric
+/// @param rowWeights  [P] a_p, finite, not negative; empty = all 1
+/// @param covariance  [n²×n²] what variances are of
+/// @return mean, and basis orthonormal along the principal axes of the covariance in its span; variances of
+/// these. `pca` itself where there is nothing to gain, or rows do not determine the vectors
 /// @source weighted low-rank approximation by alternating least squares [SrebroJaakkola2003]
 PcaResult refineForIrradiance(const PcaResult& pca, std::span<const float> rows,
-                              std::span<const float> plainRows, std::span<const float> weights,
-                              std::span<const Vec3f> normals, std::span<const uint8_t> use, int shOrder,
-                              const IrradianceWeight& weight);
+                              std::span<const float> weights, std::span<const Vec3f> normals,
+                              std::span<const float> rowWeights, std::span<const double> covariance,
+                              int shOrder, const IrradianceWeight& weight);
 
 }  // namespace prt

@@ -22,6 +22,10 @@ void runCompressCommand(int argc, char** argv) {
                  "principal vectors M, at most the n*n coefficients of the bundle");
     line.choice("--weights", settings.weights, {"irradiance", "plain"},
                 "least squares of the irradiance that shading normals receive, or of the coefficients");
+    line.choice(
+        "--covariance", settings.covariance, {"irradiance", "plain"},
+        "what the vectors are the principal ones of: errors as irradiance sees them, where --weights and "
+        "the bundle's projection are for irradiance too, or coefficients");
     line.real("--target-error", settings.targetError, 0, 1,
               "instead of --components: as few vectors as keep the relative RMSE of irradiance under every "
               "--env at most so large, against the bundle's own visibility; 0: none");

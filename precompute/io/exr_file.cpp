@@ -102,7 +102,8 @@ Imf::PixelType pixelType(ExrType type) {
 Imf::Header makeHeader(const ExrPartOut& part, const ExrPartOut& first, bool multiPart) {
     const Imath::Box2i display(Imath::V2i(0, 0), Imath::V2i(first.width - 1, first.height - 1));
     const Imath::Box2i data(Imath::V2i(0, 0), Imath::V2i(part.width - 1, part.height - 1));
-    Imf::Header header(display, data, 1, Imath::V2f(0, 0), 1, Imf::INCREASING_Y, Imf::ZIP_COMPRESSION);
+    Imf::Header header(display, data, 1, Imath::V2f(0, 0), 1, Imf::INCREASING_Y,
+                       part.compression == ExrCompression::Zip ? Imf::ZIP_COMPRESSION : Imf::NO_COMPRESSION);
     header.setType(Imf::SCANLINEIMAGE);
     if (multiPart) header.setName(part.name);
     for (const auto& [name, value] : part.attributes.strings)
@@ -118,82 +119,44 @@ Imf::Header makeHeader(const ExrPartOut& part, const ExrPartOut& first, bool mul
 // OpenEXR doesn't convert on writing: rows of half channels pass through this.
 class HalfRows {
   public:
-    HalfRows(const ExrPartOut& part, int rows) : part_(part), rows_(rows) {
-        for (const ExrChannelOut& channel : part.channels)
-            if (channel.type == ExrType::Half) buffers_.emplace_back(size_t(rows) * size_t(part.width));
-    }
-    /// Frame buffer for the rows that follow `firstRow`.
-    Imf::FrameBuffer convert(int firstRow) {
+    /// Frame buffer of rows that begin with `firstRow`.
+    Imf::FrameBuffer convert(const ExrPartOut& part, int firstRow, int rows,
+                             const std::vector<ExrChannelOut>& channels) {
         Imf::FrameBuffer frame;
         size_t buffer = 0;
-        const size_t width = size_t(part_.width);
-        for (const ExrChannelOut& channel : part_.channels) {
+        const size_t width = size_t(part.width);
+        // OpenEXR addresses rows from the top of the image.
+        const Imath::Box2i window(Imath::V2i(0, firstRow), Imath::V2i(part.width - 1, firstRow + rows - 1));
+        for (const ExrChannelOut& channel : channels) {
             const char* base = static_cast<const char*>(channel.data);
             if (channel.type != ExrType::Half) {
-                frame.insert(channel.name, Imf::Slice(pixelType(channel.type), const_cast<char*>(base),
-                                                      channel.xStride, channel.yStride));
+                frame.insert(channel.name, Imf::Slice::Make(pixelType(channel.type), base, window,
+                                                            channel.xStride, channel.yStride));
                 continue;
             }
+            if (buffer == buffers_.size()) buffers_.emplace_back();
             std::vector<half>& halves = buffers_[buffer++];
-            const int end = std::min(part_.height, firstRow + rows_);
-            for (int y = firstRow; y < end; ++y)
+            halves.resize(size_t(rows) * width);
+            for (size_t y = 0; y < size_t(rows); ++y)
                 for (size_t x = 0; x < width; ++x) {
                     float value;
-                    std::memcpy(&value, base + size_t(y) * channel.yStride + x * channel.xStride, 4);
-                    halves[size_t(y - firstRow) * width + x] = half(value);
+                    std::memcpy(&value, base + y * channel.yStride + x * channel.xStride, 4);
+                    halves[y * width + x] = half(value);
                 }
-            // OpenEXR addresses rows from the top of the image.
-            const Imath::Box2i window(Imath::V2i(0, firstRow), Imath::V2i(part_.width - 1, end - 1));
             frame.insert(channel.name, Imf::Slice::Make(Imf::HALF, halves.data(), window));
         }
         return frame;
     }
 
   private:
-    const ExrPartOut& part_;
-    int rows_;
     std::vector<std::vector<half>> buffers_;
 };
 
-void writePixels(Imf::OutputPart& out, const ExrPartOut& part, Progress& progress) {
-    // Every thread compresses 16 rows at a time; between calls, Ctrl-C is heard.
-    const int rows = 16 * std::max(2, threadCount());
-    HalfRows halfRows(part, rows);
-    for (int y = 0; y < part.height; y += rows) {
-        const int count = std::min(rows, part.height - y);
-        out.setFrameBuffer(halfRows.convert(y));
-        out.writePixels(count);
-        progress.advance(uint64_t(count));
-    }
-}
-
-}  // namespace
-
-void writeExr(const fs::path& path, const std::vector<ExrPartOut>& parts) {
-    PRT_CHECK(!parts.empty());
-    uint64_t rows = 0;
-    for (const ExrPartOut& part : parts) {
-        PRT_CHECK(part.width > 0 && part.height > 0 && !part.channels.empty());
-        if (part.width > kMaxExrSize || part.height > kMaxExrSize)
-            throw OutputError(path.string(), fmt::format("{} x {} pixels are more than {} in a direction",
-                                                         part.width, part.height, kMaxExrSize));
-        rows += uint64_t(part.height);
-    }
-    AtomicFile atomic(path);
+// Calls body; what OpenEXR throws comes out as an OutputError.
+template <class Body>
+void translateOutput(const fs::path& path, const Body& body) {
     try {
-        prepareOpenExr();
-        std::vector<Imf::Header> headers;
-        for (const ExrPartOut& part : parts) headers.push_back(makeHeader(part, parts[0], parts.size() > 1));
-        CheckedStream stream(atomic.temporaryPath());
-        Progress progress("writing", rows, "rows");
-        {
-            Imf::MultiPartOutputFile file(stream, headers.data(), int(headers.size()));
-            for (size_t i = 0; i < parts.size(); ++i) {
-                Imf::OutputPart out(file, int(i));
-                writePixels(out, parts[i], progress);
-            }
-        }
-        stream.finish();
+        body();
     } catch (const Error&) {
         throw;
     } catch (const Interrupted&) {
@@ -202,7 +165,93 @@ void writeExr(const fs::path& path, const std::vector<ExrPartOut>& parts) {
         throw OutputError(path.string(), fmt::format("cannot be written: {}", problem.what()),
                           "is the disk full?");
     }
-    atomic.commit();
+}
+
+}  // namespace
+
+struct ExrWriter::State {
+    fs::path path;
+    std::vector<ExrPartOut> parts;
+    std::vector<int> written;  // rows of each part
+    HalfRows halfRows;
+    AtomicFile atomic;
+    std::unique_ptr<CheckedStream> stream;
+    std::unique_ptr<Imf::MultiPartOutputFile> file;
+
+    State(const fs::path& destination, const std::vector<ExrPartOut>& description)
+        : path(destination), parts(description), written(description.size(), 0), atomic(destination) {}
+};
+
+ExrWriter::ExrWriter(const fs::path& path, const std::vector<ExrPartOut>& parts) {
+    PRT_CHECK(!parts.empty());
+    for (const ExrPartOut& part : parts) {
+        PRT_CHECK(part.width > 0 && part.height > 0 && !part.channels.empty());
+        if (part.width > kMaxExrSize || part.height > kMaxExrSize)
+            throw OutputError(path.string(), fmt::format("{} x {} pixels are more than {} in a direction",
+                                                         part.width, part.height, kMaxExrSize));
+    }
+    state_ = std::make_unique<State>(path, parts);
+    translateOutput(path, [&] {
+        prepareOpenExr();
+        std::vector<Imf::Header> headers;
+        for (const ExrPartOut& part : parts) headers.push_back(makeHeader(part, parts[0], parts.size() > 1));
+        state_->stream = std::make_unique<CheckedStream>(state_->atomic.temporaryPath());
+        state_->file =
+            std::make_unique<Imf::MultiPartOutputFile>(*state_->stream, headers.data(), int(headers.size()));
+    });
+}
+
+ExrWriter::~ExrWriter() = default;
+
+void ExrWriter::writeRows(size_t part, int rows, const std::vector<ExrChannelOut>& channels) {
+    PRT_CHECK_LT(part, state_->parts.size());
+    const ExrPartOut& description = state_->parts[part];
+    int& written = state_->written[part];
+    PRT_CHECK_LE(written + rows, description.height);
+    PRT_CHECK_EQ(channels.size(), description.channels.size());
+    translateOutput(state_->path, [&] {
+        Imf::OutputPart out(*state_->file, int(part));
+        // Every thread compresses a chunk at a time; between calls, Ctrl-C is heard.
+        const int step = kExrChunkRows * std::max(2, threadCount());
+        for (int y = 0; y < rows; y += step) {
+            throwIfInterrupted();
+            const int count = std::min(step, rows - y);
+            std::vector<ExrChannelOut> from = channels;
+            for (ExrChannelOut& channel : from)
+                channel.data = static_cast<const char*>(channel.data) + size_t(y) * channel.yStride;
+            out.setFrameBuffer(state_->halfRows.convert(description, written, count, from));
+            out.writePixels(count);
+            written += count;
+        }
+    });
+}
+
+void ExrWriter::commit() {
+    for (size_t part = 0; part < state_->parts.size(); ++part)
+        PRT_CHECK_EQ(state_->written[part], state_->parts[part].height);
+    translateOutput(state_->path, [&] {
+        state_->file.reset();  // writes the table of lines
+        state_->stream->finish();
+    });
+    state_->atomic.commit();
+}
+
+void writeExr(const fs::path& path, const std::vector<ExrPartOut>& parts) {
+    ExrWriter writer(path, parts);
+    uint64_t rows = 0;
+    for (const ExrPartOut& part : parts) rows += uint64_t(part.height);
+    Progress progress("writing", rows, "rows");
+    const int step = kExrChunkRows * std::max(2, threadCount());
+    for (size_t i = 0; i < parts.size(); ++i)
+        for (int y = 0; y < parts[i].height; y += step) {
+            const int count = std::min(step, parts[i].height - y);
+            std::vector<ExrChannelOut> channels = parts[i].channels;
+            for (ExrChannelOut& channel : channels)
+                channel.data = static_cast<const char*>(channel.data) + size_t(y) * channel.yStride;
+            writer.writeRows(i, count, channels);
+            progress.advance(uint64_t(count));
+        }
+    writer.commit();
 }
 
 namespace {
@@ -312,27 +361,35 @@ ExrReader::~ExrReader() = default;
 
 void ExrReader::read(size_t part, const std::vector<ExrChannelIn>& channels) const {
     PRT_CHECK_LT(part, parts_.size());
+    const int step = 256, height = parts_[part].height;
+    for (int y = 0; y < height; y += step) {
+        std::vector<ExrChannelIn> rows = channels;
+        for (ExrChannelIn& channel : rows)
+            channel.data = static_cast<char*>(channel.data) + size_t(y) * channel.yStride;
+        readRows(part, y, std::min(step, height - y), rows);
+    }
+}
+
+void ExrReader::readRows(size_t part, int firstRow, int rows,
+                         const std::vector<ExrChannelIn>& channels) const {
+    PRT_CHECK_LT(part, parts_.size());
     const ExrPartInfo& info = parts_[part];
+    PRT_CHECK_LE(0, firstRow);
+    PRT_CHECK_LE(1, rows);
+    PRT_CHECK_LE(firstRow + rows, info.height);
     for (const ExrChannelIn& channel : channels)
         if (!info.channels.contains(channel.name))
             throw InputError(path_, fmt::format("has no channel {}", channel.name));
+    throwIfInterrupted();
     try {
-        const Imath::Box2i window = file_->file->header(int(part)).dataWindow();
+        const Imath::V2i first = file_->file->header(int(part)).dataWindow().min + Imath::V2i(0, firstRow);
         Imf::FrameBuffer frame;
         for (const ExrChannelIn& channel : channels)
-            frame.insert(channel.name,
-                         Imf::Slice::Make(pixelType(channel.type), channel.data, window.min, info.width,
-                                          info.height, channel.xStride, channel.yStride));
+            frame.insert(channel.name, Imf::Slice::Make(pixelType(channel.type), channel.data, first,
+                                                        info.width, rows, channel.xStride, channel.yStride));
         Imf::InputPart in(*file_->file, int(part));
         in.setFrameBuffer(frame);
-        const int rows = 256;
-        for (int y = 0; y < info.height; y += rows) {
-            throwIfInterrupted();
-            const int last = std::min(y + rows, info.height) - 1;
-            in.readPixels(window.min.y + y, window.min.y + last);
-        }
-    } catch (const Interrupted&) {
-        throw;
+        in.readPixels(first.y, first.y + rows - 1);
     } catch (const std::exception& problem) {
         throwDamaged(path_, problem);
     }

@@ -89,11 +89,11 @@ void checkChannels(const ExrPartInfo& part, const std::vector<std::string>& name
                              "the file is damaged; make it again");
 }
 
-void checkValidity(const std::vector<Validity>& validity, const std::string& path) {
+void checkValidity(const std::vector<Validity>& validity, size_t first, const std::string& path) {
     for (size_t i = 0; i < validity.size(); ++i)
         if (uint32_t(validity[i]) >= uint32_t(kValidityCount))
-            throw InputError(path,
-                             fmt::format("point {} has the unknown validity {}", i, uint32_t(validity[i])));
+            throw InputError(
+                path, fmt::format("point {} has the unknown validity {}", first + i, uint32_t(validity[i])));
 }
 
 size_t findPart(const ExrReader& reader, const std::string& name, const std::string& path) {
@@ -161,47 +161,102 @@ void writeVisibilityFile(const std::string& path, const VisibilityMap& map) {
     writeExr(path, {part});
 }
 
-VisibilityMap readVisibilityFile(const std::string& path) {
-    const ExrReader reader(path);
-    const ExrPartInfo& part = reader.parts().at(0);
-    VisibilityMap map;
-    map.attributes = checkConventions(part.attributes, "visibility", path);
-    map.projection = takeProjection(map.attributes, path);
-    map.shOrder = requireInt(part.attributes, "shOrder", 1, kMaxFileShOrder, path);
-    map.grid = readGrid(part, path);
-    const int coefficients = map.shOrder * map.shOrder;
-    const std::vector<std::string> names = indexedNames("V", coefficients);
-    checkChannels(part, names, path);
+struct VisibilityReader::File {
+    ExrReader exr;
+    explicit File(const std::string& path) : exr(path) {}
+};
+
+VisibilityReader::VisibilityReader(const std::string& path)
+    : path_(path), file_(std::make_unique<File>(path)) {
+    const ExrPartInfo& part = file_->exr.parts().at(0);
+    header_.attributes = checkConventions(part.attributes, "visibility", path);
+    header_.projection = takeProjection(header_.attributes, path);
+    header_.shOrder = requireInt(part.attributes, "shOrder", 1, kMaxFileShOrder, path);
+    header_.grid = readGrid(part, path);
+    checkChannels(part, indexedNames("V", header_.shOrder * header_.shOrder), path);
     checkChannels(part, {"ao", "normal.X", "normal.Y", "normal.Z", "validity"}, path);
     if (part.channels.at("validity") != ExrType::Uint)
         throw InputError(path, "the channel validity is not of unsigned integers");
+}
 
-    const size_t pixels = gridPixels(map.grid), count = map.grid.count;
-    map.coefficients.resize(pixels * size_t(coefficients));
-    map.ao.resize(pixels);
-    map.normals.resize(pixels, Vec3f::Zero());
-    map.validity.resize(pixels);
+VisibilityReader::~VisibilityReader() = default;
+
+namespace {
+
+/// What of a read block lies behind the last point is cut off.
+void keepPoints(size_t points, size_t coefficients, std::vector<float>& rows, std::vector<Vec3f>& normals,
+                std::vector<Validity>& validity) {
+    rows.resize(points * coefficients);
+    normals.resize(points);
+    validity.resize(points);
+}
+
+/// Sizes the vectors to whole rows of pixels, and names them as channels to be read into.
+std::vector<ExrChannelIn> channelsOf(const VisibilityMap& header, size_t pixels, std::vector<float>& rows,
+                                     std::vector<Vec3f>& normals, std::vector<Validity>& validity) {
+    const int coefficients = header.shOrder * header.shOrder, width = header.grid.width;
+    rows.resize(pixels * size_t(coefficients));
+    normals.resize(pixels, Vec3f::Zero());
+    validity.resize(pixels);
     std::vector<ExrChannelIn> channels;
-    addInterleaved(channels, names, ExrType::Float, map.coefficients.data(), part.width,
+    addInterleaved(channels, indexedNames("V", coefficients), ExrType::Float, rows.data(), width,
                    size_t(coefficients));
-    addInterleaved(channels, {"ao"}, ExrType::Float, map.ao.data(), part.width, 1);
-    if (part.channels.contains("error")) {
+    addInterleaved(channels, kNormalNames, ExrType::Float, normals[0].data(), width, 3);
+    addInterleaved(channels, {"validity"}, ExrType::Uint, validity.data(), width, 1);
+    return channels;
+}
+
+}  // namespace
+
+void VisibilityReader::read(int firstRow, int rows, VisibilityRowBlock& block) const {
+    const PointGrid& grid = header_.grid;
+    const size_t width = size_t(grid.width), pixels = size_t(rows) * width;
+    file_->exr.readRows(0, firstRow, rows,
+                        channelsOf(header_, pixels, block.coefficients, block.normals, block.validity));
+    block.first = size_t(firstRow) * width;
+    keepPoints(std::min(pixels, grid.count - std::min(grid.count, block.first)),
+               size_t(header_.shOrder * header_.shOrder), block.coefficients, block.normals, block.validity);
+    checkValidity(block.validity, block.first, path_);
+}
+
+VisibilityMap readVisibilityFile(const std::string& path) {
+    const VisibilityReader reader(path);
+    const ExrReader& exr = reader.file_->exr;
+    VisibilityMap map = reader.header_;
+    const size_t pixels = gridPixels(map.grid), count = map.grid.count;
+    std::vector<ExrChannelIn> channels =
+        channelsOf(reader.header_, pixels, map.coefficients, map.normals, map.validity);
+    map.ao.resize(pixels);
+    addInterleaved(channels, {"ao"}, ExrType::Float, map.ao.data(), map.grid.width, 1);
+    if (exr.parts()[0].channels.contains("error")) {
         map.error.resize(pixels);
-        addInterleaved(channels, {"error"}, ExrType::Float, map.error.data(), part.width, 1);
+        addInterleaved(channels, {"error"}, ExrType::Float, map.error.data(), map.grid.width, 1);
     }
-    addInterleaved(channels, kNormalNames, ExrType::Float, map.normals[0].data(), part.width, 3);
-    addInterleaved(channels, {"validity"}, ExrType::Uint, map.validity.data(), part.width, 1);
-    reader.read(0, channels);
-    map.coefficients.resize(count * size_t(coefficients));
+    exr.read(0, channels);
+    keepPoints(count, size_t(map.shOrder * map.shOrder), map.coefficients, map.normals, map.validity);
     map.ao.resize(count);
     if (!map.error.empty()) map.error.resize(count);
-    map.normals.resize(count);
-    map.validity.resize(count);
-    checkValidity(map.validity, path);
+    checkValidity(map.validity, 0, path);
     return map;
 }
 
-void writePcaFile(const std::string& path, const PcaMap& map) {
+struct PcaWriter::State {
+    PointGrid grid;
+    size_t components;
+    std::vector<float> basis;  // the mean and the vectors below each other
+    std::vector<ExrChannelOut> basisChannels;
+    std::unique_ptr<ExrWriter> exr;
+    size_t points = 0;  // written
+
+    void writeRows(int rows, const float* weights) {
+        std::vector<ExrChannelOut> channels;
+        addInterleaved(channels, indexedNames("w", int(components)), ExrType::Float, weights, grid.width,
+                       components);
+        exr->writeRows(0, rows, channels);
+    }
+};
+
+PcaWriter::PcaWriter(const std::string& path, const PcaMap& map) : state_(std::make_unique<State>()) {
     checkGrid(map.grid);
     PRT_CHECK(map.shOrder >= 1 && map.shOrder <= kMaxFileShOrder);
     const size_t coefficients = size_t(map.shOrder) * size_t(map.shOrder);
@@ -209,9 +264,10 @@ void writePcaFile(const std::string& path, const PcaMap& map) {
     PRT_CHECK_EQ(map.mean.size(), coefficients);
     PRT_CHECK_EQ(map.basis.size(), coefficients * size_t(map.components));
     PRT_CHECK_EQ(map.variance.size(), size_t(map.components));
-    const PaddedPoints weights(map.weights, map.grid, size_t(map.components));
-    std::vector<float> rows = map.mean;
-    rows.insert(rows.end(), map.basis.begin(), map.basis.end());
+    state_->grid = map.grid;
+    state_->components = size_t(map.components);
+    state_->basis = map.mean;
+    state_->basis.insert(state_->basis.end(), map.basis.begin(), map.basis.end());
 
     std::vector<ExrPartOut> parts(2);
     ExrPartOut& weightPart = parts[0];
@@ -223,16 +279,53 @@ void writePcaFile(const std::string& path, const PcaMap& map) {
     weightPart.attributes.ints["componentCount"] = map.components;
     weightPart.attributes.floatVectors["variance"] = map.variance;
     setDomain(map.grid, weightPart.attributes);
-    addInterleaved(weightPart.channels, indexedNames("w", map.components), ExrType::Float, weights.data(),
-                   weightPart.width, size_t(map.components));
+    for (const std::string& name : indexedNames("w", map.components))
+        weightPart.channels.push_back({name, ExrType::Float, nullptr, 4, 0});
     ExrPartOut& basisPart = parts[1];
     basisPart.name = "basis";
     basisPart.width = int(coefficients);
     basisPart.height = map.components + 1;
     basisPart.attributes = conventionAttributes("pca", map.shOrder, {});
     basisPart.attributes.strings["rows"] = "row 0 the mean, row m + 1 principal vector m; columns shIndex";
-    addInterleaved(basisPart.channels, {"value"}, ExrType::Float, rows.data(), basisPart.width, 1);
-    writeExr(path, parts);
+    addInterleaved(basisPart.channels, {"value"}, ExrType::Float, state_->basis.data(), basisPart.width, 1);
+    state_->basisChannels = basisPart.channels;
+    state_->exr = std::make_unique<ExrWriter>(path, parts);
+}
+
+PcaWriter::~PcaWriter() = default;
+
+void PcaWriter::write(std::span<const float> weights) {
+    const size_t width = size_t(state_->grid.width), points = weights.size() / state_->components;
+    PRT_CHECK_EQ(points * state_->components, weights.size());
+    PRT_CHECK_EQ(state_->points % width, size_t(0));
+    PRT_CHECK_LE(state_->points + points, state_->grid.count);
+    const int rows = int((points + width - 1) / width);
+    std::vector<float> padded;
+    const float* data = weights.data();
+    if (points % width != 0) {
+        padded.assign(weights.begin(), weights.end());
+        padded.resize(size_t(rows) * width * state_->components);
+        data = padded.data();
+    }
+    if (rows > 0) state_->writeRows(rows, data);
+    state_->points += points;
+}
+
+void PcaWriter::commit() {
+    PRT_CHECK_EQ(state_->points, state_->grid.count);
+    if (state_->grid.count == 0) {  // the grid has one row even so
+        const std::vector<float> zeros(gridPixels(state_->grid) * state_->components);
+        state_->writeRows(state_->grid.height, zeros.data());
+    }
+    state_->exr->writeRows(1, int(state_->components) + 1, state_->basisChannels);
+    state_->exr->commit();
+}
+
+void writePcaFile(const std::string& path, const PcaMap& map) {
+    PRT_CHECK_EQ(map.weights.size(), map.grid.count * size_t(map.components));
+    PcaWriter writer(path, map);
+    writer.write(map.weights);
+    writer.commit();
 }
 
 PcaMap readPcaFile(const std::string& path) {

@@ -3,6 +3,8 @@
 
 #include <cstdint>
 #include <map>
+#include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -52,6 +54,39 @@ struct VisibilityMap {
     std::map<std::string, std::string> attributes;  ///< any more, written as EXR string attributes
 };
 
+/// What stage 2 reads of a point.
+struct VisibilityRowBlock {
+    size_t first = 0;                 ///< index of the first point
+    std::vector<float> coefficients;  ///< [points×n²]
+    std::vector<Validity> validity;   ///< [points]
+    std::vector<Vec3f> normals;       ///< [points]
+};
+
+/// visibility.exr opened for reading some rows of its grid at a time.
+class VisibilityReader {
+  public:
+    /// Checks conventions, channels and sizes.
+    /// @throws InputError
+    explicit VisibilityReader(const std::string& path);
+    ~VisibilityReader();
+    VisibilityReader(const VisibilityReader&) = delete;
+    VisibilityReader& operator=(const VisibilityReader&) = delete;
+
+    /// Grid, order, projection and attributes; its values are empty.
+    const VisibilityMap& header() const { return header_; }
+    /// The points of rows firstRow … firstRow + rows − 1 of the grid. Memory of the block is kept for the
+    /// next.
+    /// @throws InputError  damaged pixels; Interrupted
+    void read(int firstRow, int rows, VisibilityRowBlock& block) const;
+
+  private:
+    friend VisibilityMap readVisibilityFile(const std::string& path);
+    struct File;
+    std::string path_;
+    std::unique_ptr<File> file_;
+    VisibilityMap header_;
+};
+
 /// Channels V.00…V.NN (zero-padded shIndex), ao, error, normal.X/Y/Z (float), validity (uint); ZIP,
 /// scanlines.
 /// @throws OutputError
@@ -72,7 +107,33 @@ struct PcaMap {
     Projection projection = kPlainProjection;  ///< how the compressed coefficients were made
     std::map<std::string, std::string> attributes;
 };
+
+/// pca.exr written some rows of the grid at a time.
+class PcaWriter {
+  public:
+    /// @param map  its weights are not looked at
+    /// @throws OutputError
+    PcaWriter(const std::string& path, const PcaMap& map);
+    ~PcaWriter();
+    PcaWriter(const PcaWriter&) = delete;
+    PcaWriter& operator=(const PcaWriter&) = delete;
+
+    /// Weights of the next points of the grid, whole rows of it but for the last.
+    /// @param weights  [points×M]
+    /// @throws OutputError, Interrupted
+    void write(std::span<const float> weights);
+    /// After the last point; without it no file appears.
+    /// @throws OutputError
+    void commit();
+
+  private:
+    struct State;
+    std::unique_ptr<State> state_;
+};
+
+/// @throws OutputError
 void writePcaFile(const std::string& path, const PcaMap& map);
+/// @throws InputError
 PcaMap readPcaFile(const std::string& path);
 
 }  // namespace prt
