@@ -10,7 +10,7 @@
 namespace prt {
 namespace {
 
-constexpr size_t kTileBytes = size_t(8) << 20;
+constexpr size_t kTileBytes = size_t(4) << 20;
 
 // Whole chunks; two at least, so that two threads can decode. Not a matter of how many threads there are:
 // sums are the same for any number.

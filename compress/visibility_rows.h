@@ -54,7 +54,7 @@ using RowWeightSource = std::function<void(int firstRow, int rows, std::vector<f
 
 /// Points of visibility.exr, read anew on every pass. Those that are Valid count.
 ///
-/// Memory: a tile of at least two chunks of the file (32 rows of the image), 8 MB of coefficients where rows
+/// Memory: a tile of at least two chunks of the file (32 rows of the image), 4 MB of coefficients where rows
 /// are short, and what OpenEXR holds of chunks; nothing that grows with the number of rows but 8 bytes per
 /// chunk of the file.
 class VisibilityOnDisk final : public VisibilityRows {

@@ -238,7 +238,7 @@ VisibilityMap mapOf(const Points& points, const PointGrid& grid, const Projectio
 TEST(VisibilityOnDisk, EqualsMemory) {
     const TemporaryDirectory directory;
     const std::string path = directory.file("v.exr");
-    // 8 MB of coefficients are more than two chunks of rows unless rows are long.
+    // Tiles hold 4 MB of coefficients, or two chunks of rows where rows are long.
     for (const PointGrid& grid :
          {PointGrid{PointDomain::Texel, 7300, 37, size_t(7300) * 37}, vertexGrid(300000), vertexGrid(10)}) {
         Points few = testPoints(kOrder, 500, 11, 40, Projection{}), points;
