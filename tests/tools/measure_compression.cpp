@@ -2,15 +2,14 @@
 #include "tools/measure/compression.h"
 
 #include <cmath>
-#include <fstream>
 
 #include "compress/export_textures.h"
 #include "precompute/base/atomic_file.h"
 #include "precompute/base/error.h"
 #include "precompute/base/log.h"
 #include "precompute/math/sh.h"
-#include "precompute/visibility/precompute_job.h"
 #include "tests/base/temporary_directory.h"
+#include "tests/tools/measure_compression_box.h"
 #include "tools/measure/commands.h"
 #include "tools/measure/compression_tables.h"
 #include "tools/measure/surface_points.h"
@@ -29,7 +28,11 @@ TEST(CompressionCost, BytesAreThoseOfTextures) {
         }
     EXPECT_EQ(shippedBytes(16, "unorm8"), 16u);
     EXPECT_EQ(shippedBytes(36, "half"), 72u);
-    NormalTable table{TableKind::TripleProduct, 2, 3, 10, {}, {}};
+    NormalTable table;
+    table.kind = TableKind::TripleProduct;
+    table.size = 2;
+    table.shOrder = 3;
+    table.layers = 10;
     table.values.assign(3 * 10 * table.texels(), 0.0f);
     EXPECT_EQ(tableBytes(9, true, 2), encodeTable(table, "half").image.bytes.size());
     table.kind = TableKind::LightCosine;
@@ -56,28 +59,11 @@ TEST(CompressionStudy, TakesTheVectorsAnOrderHas) {
     EXPECT_EQ(componentsOf({2}, 1), (std::vector<int>{1}));
 }
 
-// An open box: its walls shade its floor.
-std::string boxBundle(const TemporaryDirectory& folder, bool perVertex, ProjectionKind projection) {
-    const std::string mesh = folder.file("box.obj");
-    std::ofstream(mesh) << "v -1 0 -1\nv 1 0 -1\nv 1 0 1\nv -1 0 1\nv -1 1 -1\nv 1 1 -1\nv 1 1 1\nv -1 1 1\n"
-                           "f 1 4 3 2\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
-    PrecomputeSettings settings;
-    settings.meshPath = mesh;
-    settings.bundlePath = folder.file("box.prt");
-    settings.perVertex = perVertex;
-    settings.texels = 48;
-    settings.shOrder = 4;
-    settings.rays = 512;
-    settings.projection.kind = projection;
-    runPrecompute(settings);
-    return settings.bundlePath;
-}
-
 class MeasureCompression : public testing::TestWithParam<bool> {
   protected:
     void SetUp() override {
         setQuiet(true);
-        bundle_ = boxBundle(folder_, GetParam(), ProjectionKind::Irradiance);
+        bundle_ = test::boxBundle(folder_, GetParam(), ProjectionKind::Irradiance);
     }
     void TearDown() override { setQuiet(false); }
     TemporaryDirectory folder_;
@@ -248,18 +234,60 @@ void run(std::vector<std::string> arguments) {
 
 TEST(MeasureCompressionCommand, WritesCsvAndJson) {
     const TemporaryDirectory folder;
-    const std::string bundle = boxBundle(folder, true, ProjectionKind::Plain);
+    const std::string bundle = test::boxBundle(folder, true, ProjectionKind::Plain);
     const std::string prefix = folder.file("out"), json = folder.file("out.json");
-    run({bundle,     "--env", "sky:overcast",   "--orders", "4",         "--components", "2,12",
-         "--points", "10",    "--light-orders", "3,4",      "--weights", "half",         "--plot",
-         "none",     "-o",    prefix,           "--json",   json,        "--quiet"});
+    run({bundle,
+         "--env",
+         "sky:overcast",
+         "--orders",
+         "4",
+         "--components",
+         "2,12",
+         "--points",
+         "10",
+         "--light-orders",
+         "3,4",
+         "--weights",
+         "half",
+         "--images",
+         folder.file("images"),
+         "--size",
+         "32x20",
+         "--reference-rays",
+         "64",
+         "--time-frames",
+         "1",
+         "--plot",
+         "none",
+         "-o",
+         prefix,
+         "--json",
+         json,
+         "--quiet"});
     setQuiet(false);
     const std::string text = readFile(json);
-    for (const char* part :
-         {"\"domain\": \"vertex\"", "\"weights\": \"half\"", "\"environment_count\": 1", "\"points\": 10",
-          "\"rows\": [", "\"technique\": \"unc4\"", "\"technique\": \"pca12\"", "\"compression_rmse\": ",
-          "\"shipped_rmse\": ", "\"truth_rmse\": ", "\"bytes_per_point\": ", "\"orders\": [", "\"claims\": [",
-          "\"lights\": [", "\"sensitivity\": [", "\"storage\": [", "\"enough\": \"", "\"seconds\": "})
+    for (const char* part : {"\"domain\": \"vertex\"",
+                             "\"weights\": \"half\"",
+                             "\"environment_count\": 1",
+                             "\"points\": 10",
+                             "\"rows\": [",
+                             "\"technique\": \"unc4\"",
+                             "\"technique\": \"pca12\"",
+                             "\"compression_rmse\": ",
+                             "\"shipped_rmse\": ",
+                             "\"truth_rmse\": ",
+                             "\"bytes_per_point\": ",
+                             "\"orders\": [",
+                             "\"claims\": [",
+                             "\"lights\": [",
+                             "\"sensitivity\": [",
+                             "\"storage\": [",
+                             "\"frames\": [",
+                             "\"ratio\": ",
+                             "\"pictures\": [",
+                             "\"file\": \"figure5-pca4.png\"",
+                             "\"enough\": \"",
+                             "\"seconds\": "})
         EXPECT_NE(text.find(part), std::string::npos) << part;
     EXPECT_TRUE(readFile(prefix + ".csv")
                     .starts_with("technique,order,components,format,bytes_per_point,table_bytes,fetches,"
@@ -281,6 +309,9 @@ TEST(MeasureCompressionCommand, RefusesWhatItCannotMeasure) {
     EXPECT_THROW(run({missing, "--weights", "bc7"}), UsageError);
     EXPECT_THROW(run({missing, "--projection", "best"}), UsageError);
     EXPECT_THROW(run({missing, "--points", "0"}), UsageError);
+    EXPECT_THROW(run({missing, "--size", "640"}), UsageError);
+    EXPECT_THROW(run({missing, "--eye", "1,2"}), UsageError);
+    EXPECT_THROW(run({missing, "--time-frames", "-1"}), UsageError);
     EXPECT_THROW(run({missing, "-o", prefix, "--quiet"}), InputError);
     setQuiet(false);
 }

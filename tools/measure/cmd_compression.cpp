@@ -9,8 +9,10 @@
 #include "tools/environment_arguments.h"
 #include "tools/measure/commands.h"
 #include "tools/measure/compression.h"
+#include "tools/measure/compression_images.h"
 #include "tools/measure/compression_tables.h"
 #include "tools/measure/output.h"
+#include "tools/relight_arguments.h"
 
 namespace prt::tools {
 namespace {
@@ -22,9 +24,13 @@ struct Arguments {
     MeasureOptions options{.prefix = "compression"};
     std::string bundle, projection = "bundle";
     std::string orders = "3,4,6", components = "4,8,12,16,24", lightOrders = "3-12";
+    std::string images, sizeText = "640x400";
     std::vector<std::string> sources;
-    int seed = 1;
+    int seed = 1, frames = 5;
+    CompressionView view;
+    RelightArguments camera;  // of these only the camera is used
 
+    Arguments() { camera.distance = 0.6; }
     void addTo(CommandLine& line) {
         line.positional("BUNDLE", bundle, "bundle made by prt precompute");
         line.textList("--env", sources, "ENV",
@@ -37,15 +43,47 @@ struct Arguments {
         line.choice("--weights", study.encoding, pointEncodings(), "format of weights as shipped");
         line.integer("--points", study.points, 1, 1000000, "where irradiance is judged");
         line.integer("--seed", seed, 0, 1000000000, "of the points");
+        line.text("--images", images, "DIR",
+                  "draws Figs. 5 and 6 under the first environment into this folder");
+        line.text("--size", sizeText, "WIDTHxHEIGHT", "pixels of the pictures, and of frames that are timed");
+        line.integer("--time-frames", frames, 0, 10000,
+                     "times are medians of so many frames; 0: none are timed");
+        line.integer("--reference-rays", view.referenceRays, 64, 1 << 20,
+                     "directions of the pictures' reference, before refinement");
+        line.text("--eye", camera.eyeText, "X,Y,Z", "camera position; else it is placed by the next three");
+        line.text("--target", camera.targetText, "X,Y,Z", "point looked at; else the middle of the scene");
+        line.real("--azimuth", camera.azimuthDeg, -1e6, 1e6,
+                  "of the camera around the scene, degrees from +Z towards +X");
+        line.real("--elevation", camera.elevationDeg, -89, 89, "of the camera above the horizon, degrees");
+        line.real("--distance", camera.distance, 0.01, 100,
+                  "of the camera, 1 = the scene's bounding sphere fills the picture");
+        line.real("--fov", camera.fovDeg, 1, 160, "vertical field of view, degrees");
         addMeasureOptions(line, options);
     }
     void finish() {
+        parseSize("--size", sizeText, view.width, view.height);
+        float unused[3];
+        if (!camera.eyeText.empty()) parseVector("--eye", camera.eyeText, unused);
+        if (!camera.targetText.empty()) parseVector("--target", camera.targetText, unused);
         study.seed = uint64_t(seed);
         study.orders = parseIntegerList("--orders", orders, 1, kMaxBundleShOrder);
         study.components = parseIntegerList("--components", components, 1, shCount(kMaxBundleShOrder));
         study.lightOrders = parseIntegerList("--light-orders", lightOrders, 1, kMostLightBands);
     }
 };
+
+std::vector<FrameTime> timeFrames(CompressionScene& scene, const Arguments& arguments,
+                                  const Environment& environment) {
+    if (arguments.frames == 0) return {};
+    try {
+        return timeCompressionFrames(scene, arguments.study.orders,
+                                     componentsOf(arguments.study.components, arguments.study.orders.back()),
+                                     environment, arguments.view, arguments.frames);
+    } catch (const InputError& error) {  // no OSMesa, or a scene that its runtime cannot draw
+        logNote(fmt::format("no frames are timed: {}", error.what()));
+        return {};
+    }
+}
 
 }  // namespace
 
@@ -66,7 +104,14 @@ void runMeasureCompression(int argc, char** argv) {
     const CompressionStudy& study = arguments.study;
     const std::vector<Environment> environments = loadEnvironmentsOrSkies(arguments.sources, true);
     CompressionScene scene(arguments.bundle, arguments.projection == "plain", study.orders.back());
+    arguments.view.camera = arguments.camera.camera(sceneBounds(scene.scene()));
+    arguments.view.tableSize = kTableSize;
     const CompressionResult result = studyCompression(scene, environments, study);
+    const std::vector<FrameTime> times = timeFrames(scene, arguments, environments[0]);
+    std::vector<PictureRow> pictures;
+    if (!arguments.images.empty())
+        pictures = drawCompressionFigures(scene, study.orders, study.encoding, environments[0],
+                                          arguments.view, arguments.images);
 
     Measurement measurement{.name = "compression",
                             .rows = compressionTable(result, study.encoding, kTableSize)};
@@ -75,9 +120,13 @@ void runMeasureCompression(int argc, char** argv) {
                         {"lights", lightTable(result)},
                         {"sensitivity", sensitivityTable(result)},
                         {"storage", storageTable(result, study.encoding)}};
+    if (!times.empty()) measurement.more.emplace_back("frames", frameTable(times));
+    if (!pictures.empty()) measurement.more.emplace_back("pictures", pictureTable(pictures));
     measurement.figures = {{"", compressionFigure(result)}};
     measurement.summary = fmt::format("{}\n{}\n{}", measurement.rows.text(),
                                       measurement.more[0].second.text(), verdictText(result));
+    for (const auto& [name, table] : measurement.more)
+        if (name == "frames" || name == "pictures") measurement.summary += fmt::format("\n{}", table.text());
     Report report;
     report.set("bundle", arguments.bundle)
         .set("domain", std::string(pointDomainName(result.domain)))

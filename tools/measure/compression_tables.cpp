@@ -125,6 +125,24 @@ Table storageTable(const CompressionResult& result, const std::string& encoding)
     return table;
 }
 
+Table frameTable(const std::vector<FrameTime>& times) {
+    Table table({"technique", "order", "components", "frame_ms", "ratio"});
+    for (const FrameTime& row : times)
+        table.add(
+            {row.components > 0 ? fmt::format("pca{}", row.components) : fmt::format("unc{}", row.shOrder),
+             uint64_t(row.shOrder), uint64_t(row.components), row.milliseconds, row.ratio});
+    return table;
+}
+
+Table pictureTable(const std::vector<PictureRow>& pictures) {
+    Table table({"figure", "picture", "against", "relative_rmse", "file", "difference_file"});
+    for (const PictureRow& row : pictures)
+        table.add({row.figure, row.picture, row.against,
+                   row.differenceFile.empty() ? std::numeric_limits<double>::quiet_NaN() : row.relativeRmse,
+                   row.file, row.differenceFile});
+    return table;
+}
+
 std::string verdictText(const CompressionResult& result) {
     std::string text;
     const auto least = [](int components) {

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "tools/measure/compression.h"
+#include "tools/measure/compression_images.h"
 #include "tools/measure/figure.h"
 #include "tools/measure/table.h"
 
@@ -23,6 +24,11 @@ Table lightTable(const CompressionResult& result);
 Table sensitivityTable(const CompressionResult& result);
 /// Bytes of a point of visibility, and of the transfer matrices it replaces.
 Table storageTable(const CompressionResult& result, const std::string& encoding);
+
+/// Times of frames, and their ratio to uncompressed visibility of the highest order.
+Table frameTable(const std::vector<FrameTime>& times);
+/// Files and errors of the pictures.
+Table pictureTable(const std::vector<PictureRow>& pictures);
 
 /// The claims in words, a line each.
 std::string verdictText(const CompressionResult& result);

@@ -1,0 +1,21 @@
+// Labelled pictures side by side.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "precompute/io/image.h"
+
+namespace prt::tools {
+
+struct SheetCell {
+    std::string label;  ///< ASCII, one line
+    ByteImage image;    ///< 3 channels; no pixels: the cell stays empty
+};
+
+/// Rows of cells, each label above its picture, a title on top. Text that is wider than its place is cut.
+/// @param rows  at least one picture; cells are as large as the largest
+/// @return 3 channels
+ByteImage composeSheet(const std::string& title, const std::vector<std::vector<SheetCell>>& rows);
+
+}  // namespace prt::tools
