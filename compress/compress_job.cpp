@@ -6,17 +6,21 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <map>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 
 #include "compress/choose_components.h"
 #include "compress/compress_visibility.h"
+#include "compress/point_areas.h"
 #include "compress/renewal_command.h"
 #include "compress/tables/normal_tables.h"
 #include "precompute/base/error.h"
 #include "precompute/base/log.h"
 #include "precompute/io/bundle.h"
 #include "precompute/io/environment_file.h"
+#include "precompute/io/glb.h"
 #include "precompute/io/visibility_file.h"
 #include "precompute/math/sh.h"
 
@@ -25,6 +29,7 @@ namespace {
 
 constexpr const char* kVisibility = "visibility.exr";
 constexpr const char* kPca = "pca.exr";
+constexpr const char* kMesh = "mesh.glb";
 constexpr const char* kIrradiance = "irradiance";
 
 std::string compressCommand(const CompressSettings& settings) {
@@ -34,6 +39,7 @@ std::string compressCommand(const CompressSettings& settings) {
     else
         command += fmt::format(" --target-error {:g}", settings.targetError);
     command += fmt::format(" --weights {} --covariance {}", settings.weights, settings.covariance);
+    if (settings.areaWeighted) command += " --area-weighted";
     if (settings.targetError == 0) return command;
     for (const std::string& environment : settings.environments)
         command += " --env " + shellWord(environment);
@@ -82,6 +88,7 @@ PcaMap makePcaMap(const VisibilityMap& visibility, const PcaResult& pca, const C
     map.attributes["explainedVariance"] = fmt::format("{:.9g}", pca.explainedVariance);
     map.attributes["weightsFit"] = settings.weights;
     map.attributes["covariance"] = settings.covariance;
+    map.attributes["pointsCount"] = settings.areaWeighted ? "area" : "equal";
     if (settings.weights == kIrradiance) {
         const IrradianceWeight& weight = visibility.projection.weight;
         map.attributes["weightsConeDegrees"] = fmt::format("{:.9g}", weight.coneDegrees);
@@ -110,7 +117,9 @@ struct TargetEnvironments {
 };
 
 nlohmann::json compressSettingsJson(const CompressSettings& settings, const TargetEnvironments& target) {
-    nlohmann::json json = {{"weights", settings.weights}, {"covariance", settings.covariance}};
+    nlohmann::json json = {{"weights", settings.weights},
+                           {"covariance", settings.covariance},
+                           {"area_weighted", settings.areaWeighted}};
     if (settings.targetError == 0) {
         json["components"] = settings.components;
     } else {
@@ -164,6 +173,14 @@ std::optional<CompressReport> reportOfSame(const Bundle& bundle, const std::stri
     }
 }
 
+RowWeightSource areaWeights(const Bundle& bundle, const PointGrid& grid) {
+    bundle.require(kMesh, "prt precompute");
+    const auto areas = std::make_shared<const PointAreas>(readGltf(bundle.pathOf(kMesh).string()), grid);
+    return [areas](int firstRow, int rows, std::vector<float>& weights) {
+        areas->evaluate(firstRow, rows, weights);
+    };
+}
+
 CompressionSettings compressionSettings(const CompressSettings& settings) {
     return {settings.components, settings.weights == kIrradiance ? WeightsFit::Irradiance : WeightsFit::Plain,
             settings.covariance == kIrradiance ? Covariance::Irradiance : Covariance::Plain};
@@ -198,16 +215,21 @@ CompressReport runCompress(const CompressSettings& settings) {
     if (!settings.force)
         if (const auto report = reportOfSame(bundle, wanted)) return *report;
 
-    const VisibilityOnDisk rows(bundle.pathOf(kVisibility).string());
+    VisibilityOnDisk rows(bundle.pathOf(kVisibility).string());
     const VisibilityMap& header = rows.header();
     if (settings.targetError == 0) checkComponents(settings.components, header.shOrder);
 
+    std::map<std::string, std::string> madeFrom = {{kVisibility, bundle.find(kVisibility)->xxh3}};
+    if (settings.areaWeighted) {
+        rows.setRowWeights(areaWeights(bundle, header.grid));
+        madeFrom[kMesh] = bundle.find(kMesh)->xxh3;
+    }
     CompressReport report;
     const VisibilityStatistics statistics(rows, header.projection);
     const PcaResult pca = findBasis(rows, statistics, settings, target, report);
     BundleTransaction transaction(settings.bundlePath, false);
     const std::filesystem::path staged =
-        transaction.stage(kPca, {{kVisibility, bundle.find(kVisibility)->xxh3}}, compressCommand(settings));
+        transaction.stage(kPca, std::move(madeFrom), compressCommand(settings));
     PcaWriter writer(staged.string(), makePcaMap(header, pca, settings));
     CompressionErrors errors;
     compressRows(

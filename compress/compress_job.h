@@ -17,6 +17,9 @@ struct CompressSettings {
     /// What the vectors are the principal ones of: "irradiance" refines them for what irradiance sees, where
     /// weights and projection are for irradiance too; "plain" takes coefficients as they are.
     std::string covariance = "irradiance";
+    /// Points count as much as the surface that they stand for (PointAreas), in the vectors and in the errors
+    /// of the report; else all the same. Needs mesh.glb.
+    bool areaWeighted = false;
     /// Above 0, in place of `components`: the least number of vectors whose relative RMSE of irradiance under
     /// every one of the environments is at most this, against the bundle's own visibility.
     double targetError = 0;

@@ -26,6 +26,8 @@ void runCompressCommand(int argc, char** argv) {
         "--covariance", settings.covariance, {"irradiance", "plain"},
         "what the vectors are the principal ones of: errors as irradiance sees them, where --weights and "
         "the bundle's projection are for irradiance too, or coefficients");
+    line.flag("--area-weighted", settings.areaWeighted,
+              "let points count as much as the surface they stand for, in vectors and reported errors");
     line.real("--target-error", settings.targetError, 0, 1,
               "instead of --components: as few vectors as keep the relative RMSE of irradiance under every "
               "--env at most so large, against the bundle's own visibility; 0: none");
