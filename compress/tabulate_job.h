@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "compress/tables/table_options.h"
 #include "precompute/io/environment_file.h"
 
 namespace prt {
@@ -12,8 +13,7 @@ struct TabulateSettings {
     std::string bundlePath;
     std::vector<std::string> environments;  ///< files or sky:NAME
     std::string kind = "triple-product";    ///< or "light-cosine"
-    std::string layout = "cube";
-    int size = 32;
+    TableOptions table;
     EnvironmentOptions environmentOptions = {};
     bool force = false;  ///< also tables that the bundle has just so already
 };
@@ -23,6 +23,11 @@ struct TabulateRow {
     size_t bytes = 0;
     double seconds = 0;
     bool upToDate = false;  ///< the bundle had just that already
+    /// Where the sun was to be extracted; its shadows are made by bakeSunShadow (visibility/sun_shadow.h)
+    ExtractedSun sun;
+    double windowWidth = 0;  ///< bands; infinity: the light needed none, 0: none was asked for
+    /// Of the variant "paper": √(Σ (paper − exact)² / Σ exact²) over the table; 0 for the exact one
+    double relativeDifferenceFromExact = 0;
 };
 /// Writes a table for each environment; leaves those that are current and were made with the same settings.
 std::vector<TabulateRow> runTabulate(const TabulateSettings& settings);

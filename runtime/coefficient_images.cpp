@@ -73,7 +73,21 @@ std::vector<BorderSource> borderSources(int size) {
     return sources;
 }
 
-// One RGBA group of six bordered faces from up to four planes [6·size²] (null: zeros).
+// Where the texels of one group come from.
+struct GroupImages {
+    int width, height, count;  ///< count images of width × height
+    std::vector<BorderSource> sources;
+};
+
+GroupImages groupImages(const NormalTable& table) {
+    if (table.layout == "cube") return {table.size + 2, table.size + 2, 6, borderSources(table.size)};
+    const auto [width, height] = table.imageSize();
+    GroupImages images{width, height, 1, {}};
+    for (int i = 0; i < width * height; ++i) images.sources.push_back({{i, i, i}});
+    return images;
+}
+
+// One RGBA group from up to four planes [texels] (null: zeros).
 void fillGroup(const std::vector<BorderSource>& sources, const float* const planes[4], std::span<float> out) {
     for (int channel = 0; channel < 4; ++channel) {
         const float* plane = planes[channel];
@@ -115,17 +129,19 @@ void uploadTable(const GlContext& context, const NormalTable& table, TableImage&
     const GlFunctions& gl = context.gl();
     const bool mean = table.kind == TableKind::TripleProduct;
     const int used = mean ? table.layers - 1 : table.layers, layers = (used + 3) / 4;
-    const int groups = 3 * layers + (mean ? 1 : 0), edge = table.size + 2;
-    if (!image.texture || image.size != table.size || image.layers != layers || image.mean != mean) {
+    const int groups = 3 * layers + (mean ? 1 : 0);
+    const auto [width, height, count, sources] = groupImages(table);
+    if (!image.texture || image.layout != table.layout || image.size != table.size ||
+        image.layers != layers || image.mean != mean) {
         image = {};
-        image.texture = makeArray(context, edge, edge, groups * 6, "table");
+        image.texture = makeArray(context, width, height, groups * count, "table");
+        image.layout = table.layout;
         image.size = table.size;
         image.layers = layers;
         image.mean = mean;
     }
-    const std::vector<BorderSource> sources = borderSources(table.size);
     std::vector<float> texels(size_t(groups) * sources.size() * 4, 0.0f);
-    parallelFor(size_t(groups), 1, [&](size_t group, size_t) {
+    parallelFor(size_t(groups), 1, [&, &from = sources](size_t group, size_t) {
         const float* planes[4] = {};
         for (int k = 0; k < 4; ++k) {
             const int colour = int(group) / layers, index = int(group) % layers * 4 + k;
@@ -134,9 +150,9 @@ void uploadTable(const GlContext& context, const NormalTable& table, TableImage&
             else
                 planes[k] = index < used ? table.layer(colour, index) : nullptr;
         }
-        fillGroup(sources, planes, std::span(texels).subspan(group * sources.size() * 4, sources.size() * 4));
+        fillGroup(from, planes, std::span(texels).subspan(group * from.size() * 4, from.size() * 4));
     });
-    gl.TextureSubImage3D(image.texture.name(), 0, 0, 0, 0, edge, edge, groups * 6, GL_RGBA, GL_FLOAT,
+    gl.TextureSubImage3D(image.texture.name(), 0, 0, 0, 0, width, height, groups * count, GL_RGBA, GL_FLOAT,
                          texels.data());
     context.check("uploading a table");
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <span>
+#include <string>
 #include <vector>
 
 #include "precompute/io/table_file.h"
@@ -26,10 +27,12 @@ struct CoefficientImage {
 CoefficientImage uploadCoefficients(const GlContext& context, const PointGrid& grid, int perPoint,
                                     std::span<const float> values, const char* where);
 
-/// A table over normals: a 2D array whose layer 6·(colour·layers + i) + face holds coefficients 4i … 4i + 3
-/// on a face, within a border of the neighbouring faces' texels; then the RGB mean, if there is one.
+/// A table over normals: a 2D array whose group colour·layers + i holds coefficients 4i … 4i + 3; then the
+/// RGB mean, if there is one. A group is one image of the table's layout; of a cube six, the faces, each
+/// within a border of the neighbouring faces' texels.
 struct TableImage {
     GlObject texture;
+    std::string layout;
     int size = 0;
     int layers = 0;
     bool mean = false;

@@ -6,34 +6,40 @@
 
 #include <numbers>
 
-#include "compress/tables/normal_tables.h"
 #include "precompute/base/check.h"
 #include "precompute/math/sh.h"
 
 namespace prt {
 
-LiveLight::LiveLight(const std::vector<Environment>& environments, int shOrder, int tableSize)
-    : shOrder_(shOrder), tableSize_(tableSize), builder_(TableLayout("cube", tableSize), shOrder) {
+LiveLight::LiveLight(const std::vector<Environment>& environments, int shOrder, const TableOptions& options)
+    : shOrder_(shOrder),
+      options_(options),
+      builder_(TableLayout(options.layout, options.size), shOrder, options.cosineBands()) {
     PRT_CHECK(!environments.empty());
     for (const Environment& environment : environments) {
-        environments_.push_back(projectEnvironment(environment.view(), tableEnvironmentShOrder(shOrder)));
+        TableLight light = projectTableLight(environment.view(), shOrder, options);
+        environments_.push_back(std::move(light.rest));
+        suns_.push_back(std::move(light.sun));
         names_.push_back(environment.name);
         hashes_.push_back(environment.contentHash);
     }
 }
 
-NormalTable LiveLight::lightCosineTable(const std::vector<double>& weights, double rotationRad) const {
+EnvironmentSh LiveLight::blend(const std::vector<double>& weights, double rotationRad) const {
     PRT_CHECK_EQ(weights.size(), environments_.size());
     EnvironmentSh light = blendEnvironments(environments_, weights);
-    if (rotationRad != 0) light = rotateEnvironmentAboutUp(light, rotationRad);
+    return rotationRad == 0 ? light : rotateEnvironmentAboutUp(light, rotationRad);
+}
 
+NormalTable LiveLight::emptyTable(TableKind kind, int layers, const std::vector<double>& weights,
+                                  double rotationRad) const {
     NormalTable table;
-    table.kind = TableKind::LightCosine;
-    table.size = tableSize_;
+    table.kind = kind;
+    table.layout = options_.layout;
+    table.size = options_.size;
     table.shOrder = shOrder_;
-    table.layers = shCount(shOrder_);
-    table.values.resize(size_t(3) * size_t(table.layers) * table.texels());
-    builder_.buildLightCosine(light, table.values);
+    table.layers = layers;
+    table.values.resize(size_t(3) * size_t(layers) * table.texels());
     std::string names, hashes;
     for (size_t k = 0; k < weights.size(); ++k) {
         if (weights[k] == 0) continue;
@@ -43,17 +49,23 @@ NormalTable LiveLight::lightCosineTable(const std::vector<double>& weights, doub
     table.attributes = {{"environmentName", names},
                         {"environmentHash", hashes},
                         {"rotationDeg", fmt::format("{:.9g}", rotationRad * 180 / std::numbers::pi)},
-                        {"cosineBands", std::to_string(kTableCosineBands)}};
+                        {"cosineBands", std::to_string(options_.cosineBands())}};
+    return table;
+}
+
+NormalTable LiveLight::lightCosineTable(const std::vector<double>& weights, double rotationRad) const {
+    const EnvironmentSh light = blend(weights, rotationRad);
+    NormalTable table = emptyTable(TableKind::LightCosine, shCount(shOrder_), weights, rotationRad);
+    builder_.buildLightCosine(light, table.values);
     return table;
 }
 
 NormalTable LiveLight::tripleProductTable(const std::vector<double>& weights, double rotationRad,
                                           const PcaMap& pca) const {
     PRT_CHECK_EQ(pca.shOrder, shOrder_);
-    NormalTable table = lightCosineTable(weights, rotationRad);
-    table.kind = TableKind::TripleProduct;
-    table.layers = pca.components + 1;
-    table.values = buildTripleProductTable(table.values, shOrder_, tableSize_, pca.mean, pca.basis);
+    const EnvironmentSh light = blend(weights, rotationRad);
+    NormalTable table = emptyTable(TableKind::TripleProduct, pca.components + 1, weights, rotationRad);
+    builder_.buildTripleProduct(light, pca.mean, pca.basis, table.values);
     return table;
 }
 

@@ -45,8 +45,14 @@ struct TechniqueData {
     CoefficientImage coefficients;
     TableImage table;
     int shOrder = 0, perPoint = 0;
-    GlProgram program;
+    std::string defines;                        ///< of light.frag, but for the table's layout
+    std::map<std::string, GlProgram> programs;  ///< by the table's layout
 };
+
+const char* layoutDefine(const std::string& layout) {
+    if (layout == "dual-paraboloid") return "#define TABLE_DUAL_PARABOLOID\n";
+    return layout == "octahedral" ? "#define TABLE_OCTAHEDRAL\n" : "";
+}
 
 std::vector<float> readImage(const GlFunctions& gl, const GlObject& image, size_t pixels) {
     std::vector<float> values(pixels * 4);
@@ -115,10 +121,8 @@ void Renderer::State::addTechnique(Technique technique, const PointGrid& grid, i
         uploadCoefficients(context, grid, perPoint, values, pca ? "PCA weights" : "visibility");
     data.shOrder = shOrder;
     data.perPoint = perPoint;
-    std::string defines;
-    if (grid.domain == PointDomain::Vertex) defines += "#define PER_VERTEX\n";
-    if (pca) defines += "#define WITH_MEAN\n";
-    data.program = GlProgram(gl, "screen.vert", "light.frag", defines);
+    if (grid.domain == PointDomain::Vertex) data.defines += "#define PER_VERTEX\n";
+    if (pca) data.defines += "#define WITH_MEAN\n";
 }
 
 CameraFrame Renderer::State::begin(const Camera& camera, const RenderOptions& options) {
@@ -155,7 +159,7 @@ void Renderer::State::drawSurface(const CameraFrame& camera, const RenderOptions
 // Over the pixels whose depth is greater than that of nothing.
 void Renderer::State::drawLight(const TechniqueData& data) {
     gl.DepthFunc(GL_LESS);
-    const GlProgram& program = data.program;
+    const GlProgram& program = data.programs.at(data.table.layout);
     program.use();
     program.set("layers", data.table.layers);
     program.set("tableSize", data.table.size);
@@ -243,6 +247,9 @@ void Renderer::setTable(const NormalTable& table) {
                                      table.shOrder, table.layers, data.shOrder, layers),
                          "make it anew with prt tabulate");
     uploadTable(state_->context, table, data.table);
+    if (!data.programs.contains(table.layout))
+        data.programs.emplace(table.layout, GlProgram(state_->gl, "screen.vert", "light.frag",
+                                                      data.defines + layoutDefine(table.layout)));
 }
 
 void Renderer::setBackground(const FloatImage& latLong, double rotationRad) {

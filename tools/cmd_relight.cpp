@@ -79,7 +79,7 @@ class TableSource {
             return std::move(*stored);
         }
         fromBundle_ = false;
-        if (!live_) live_.emplace(data_.environments, data_.shOrder, arguments_.tableSize);
+        if (!live_) live_.emplace(data_.environments, data_.shOrder, arguments_.tables);
         return technique == Technique::Unc ? live_->lightCosineTable(weights, rotationRad_)
                                            : live_->tripleProductTable(weights, rotationRad_, *data_.pca);
     }
@@ -108,12 +108,19 @@ class TableSource {
     }
 
     std::optional<NormalTable> stored(TableKind kind, const Environment& environment) const {
-        const std::string name = tableFileName(environment.name, tableKindName(kind), "cube");
+        const std::string name =
+            tableFileName(environment.name, tableKindName(kind), arguments_.tables.layout);
         if (!data_.bundle.find(name) || !data_.bundle.staleReason(name, false).empty()) return std::nullopt;
         NormalTable table = readTableFile(data_.bundle.pathOf(name).string());
-        const auto hash = table.attributes.find("environmentHash");
-        const bool fits = hash != table.attributes.end() && hash->second == environment.contentHash &&
-                          table.size == arguments_.tableSize && table.shOrder == data_.shOrder;
+        const TableOptions& wanted = arguments_.tables;
+        const auto is = [&](const char* attribute, const std::string& value) {
+            const auto found = table.attributes.find(attribute);
+            return found != table.attributes.end() && found->second == value;
+        };
+        const bool fits = table.size == wanted.size && table.shOrder == data_.shOrder &&
+                          is("environmentHash", environment.contentHash) &&
+                          is("cosineBands", std::to_string(wanted.cosineBands())) &&
+                          is("window", wanted.window) && is("extractSun", wanted.extractSun ? "yes" : "no");
         return fits ? std::optional(std::move(table)) : std::nullopt;
     }
 

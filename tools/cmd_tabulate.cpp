@@ -1,13 +1,36 @@
 // prt tabulate: tables for an engine to ship.
 #include <fmt/format.h>
 
+#include <cmath>
+#include <numbers>
+
 #include "compress/tabulate_job.h"
 #include "tools/command_line.h"
 #include "tools/commands.h"
 #include "tools/environment_arguments.h"
 #include "tools/report.h"
+#include "tools/table_arguments.h"
 
 namespace prt::tools {
+
+namespace {
+
+void printRemarks(const TabulateSettings& settings, const TabulateRow& row) {
+    if (row.relativeDifferenceFromExact > 0)
+        fmt::print("  {:.2g} away from the exact tables (relative RMS)\n", row.relativeDifferenceFromExact);
+    if (row.windowWidth > 0)
+        fmt::print("  {}\n", std::isinf(row.windowWidth)
+                                 ? "the light is nowhere negative as it is: no window"
+                                 : fmt::format("window of {:.3g} bands", row.windowWidth));
+    if (settings.table.extractSun && row.sun.found)
+        fmt::print("  sun: {:.1f} % of the light, {:.2f} degrees across, from ({:.3f}, {:.3f}, {:.3f})\n",
+                   100 * row.sun.share, 2 * row.sun.angularRadiusRad * 180 / std::numbers::pi,
+                   row.sun.direction.x(), row.sun.direction.y(), row.sun.direction.z());
+    else if (settings.table.extractSun)
+        fmt::print("  no sun\n");
+}
+
+}  // namespace
 
 void runTabulateCommand(int argc, char** argv) {
     TabulateSettings settings;
@@ -21,8 +44,7 @@ void runTabulateCommand(int argc, char** argv) {
     line.positionalList("ENVIRONMENT", settings.environments, "environments");
     line.choice("--kind", settings.kind, {"triple-product", "light-cosine"},
                 "light x cosine x component (needs prt compress), or light x cosine");
-    line.choice("--layout", settings.layout, {"cube"}, "how the sphere of normals is laid out");
-    line.integer("--size", settings.size, 1, 1024, "texels along an edge of a cube face");
+    addTableOptions(line, "--", settings.table);
     addEnvironmentOptions(line, settings.environmentOptions);
     line.flag("--force", settings.force, "also tables that the bundle has just so already");
     if (!line.parse(argc, argv)) return;
@@ -36,18 +58,23 @@ void runTabulateCommand(int argc, char** argv) {
                        row.upToDate
                            ? "current, nothing to do"
                            : fmt::format("{:.1f} kB, {:.3f} s", double(row.bytes) * 1e-3, row.seconds));
+        if (line.common().json != "-") printRemarks(settings, row);
         Report one;
         one.set("environment", row.environment)
             .set("file", row.file)
             .set("bytes", uint64_t(row.bytes))
             .set("up_to_date", row.upToDate)
+            .set("relative_difference_from_exact", row.relativeDifferenceFromExact)
             .set("seconds", row.seconds);
         reportRows.push_back(std::move(one));
     }
     report.set("bundle", settings.bundlePath)
         .set("kind", settings.kind)
-        .set("layout", settings.layout)
-        .set("size", settings.size)
+        .set("layout", settings.table.layout)
+        .set("size", settings.table.size)
+        .set("variant", settings.table.variant)
+        .set("window", settings.table.window)
+        .set("extract_sun", settings.table.extractSun)
         .set("rows", reportRows);
     report.write(line.common().json);
 }

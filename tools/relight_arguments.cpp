@@ -9,6 +9,7 @@
 #include "precompute/base/error.h"
 #include "tools/command_line.h"
 #include "tools/environment_arguments.h"
+#include "tools/table_arguments.h"
 
 namespace prt::tools {
 namespace {
@@ -68,7 +69,7 @@ void RelightArguments::addTo(CommandLine& line) {
     line.real("--fov", fovDeg, 1, 160, "vertical field of view, degrees");
     line.flag("--no-normal-map", noNormalMap, "shade with the mesh's own normals");
     line.flag("--no-background", noBackground, "black where nothing is seen");
-    line.integer("--table-size", tableSize, 1, 1024, "texels along an edge of the cube tables");
+    addTableOptions(line, "--table-", tables);
     line.flag("--compare-reference", compareReference,
               "print the error of every technique against ray tracing");
     line.flag("--each", each,
@@ -92,6 +93,7 @@ void RelightArguments::finish() {
             throw UsageError("--exposure",
                              fmt::format("'{}' is neither a number of stops nor auto", exposureText));
     }
+    checkTableOptions(tables, "--table-");
     checkImageName("--output", output);
     checkImageName("--reference-output", referenceOutput);
     checkImageName("--difference-output", differenceOutput);

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "compress/tables/table_options.h"
 #include "precompute/io/environment_file.h"
 #include "precompute/io/scene.h"
 #include "precompute/io/surface_image.h"
@@ -30,11 +31,12 @@ struct RelightArguments {
     std::string exposureText = "0";
     std::string eyeText, targetText;
     double rotateDeg = 0, fovDeg = 40, azimuthDeg = 35, elevationDeg = 18, distance = 1;
-    int tableSize = 32, referenceRays = 4096, timeFrames = 0;
+    int referenceRays = 4096, timeFrames = 0;
     bool noNormalMap = false, noBackground = false, compareReference = false, each = false;
 
     std::vector<EnvironmentArgument> environments;
     EnvironmentOptions environmentOptions;
+    TableOptions tables;
     int width = 0, height = 0;
     std::optional<double> exposureStops;  ///< empty: chosen from the picture
 

@@ -114,17 +114,19 @@ std::vector<float> buildTripleProductTable(std::span<const float> lightCosine, i
     return table;
 }
 
-std::vector<float> lookUpTable(std::span<const float> table, int layers, int size, const Vec3d& normal) {
-    const size_t texels = size_t(6) * size_t(size) * size_t(size);
+std::vector<float> lookUpTable(std::span<const float> table, int layers, const TableLayout& layout,
+                               const Vec3d& normal) {
+    const auto texels = size_t(layout.texelCount());
     PRT_CHECK_EQ(table.size(), size_t(3) * size_t(layers) * texels);
-    const auto taps = cubeSeamlessTaps(normal, size);
     std::vector<float> values(size_t(3) * size_t(layers), 0.0f);
-    for (const CubeTap& tap : taps) {
-        const size_t texel = (size_t(tap.face) * size_t(size) + size_t(tap.y)) * size_t(size) + size_t(tap.x);
+    for (const SphereTap& tap : layout.taps(normal))
         for (size_t layer = 0; layer < values.size(); ++layer)
-            values[layer] += tap.weight * table[layer * texels + texel];
-    }
+            values[layer] += tap.weight * table[layer * texels + size_t(tap.texel)];
     return values;
+}
+
+std::vector<float> lookUpTable(std::span<const float> table, int layers, int size, const Vec3d& normal) {
+    return lookUpTable(table, layers, TableLayout("cube", size), normal);
 }
 
 }  // namespace prt

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "precompute/math/environment.h"
+#include "precompute/math/table_layout.h"
 
 namespace prt {
 
@@ -42,8 +43,11 @@ std::vector<float> buildLightCosineTable(const EnvironmentSh& environment, int s
 std::vector<float> buildTripleProductTable(std::span<const float> lightCosine, int shOrder, int size,
                                            std::span<const float> mean, std::span<const float> basis);
 
-/// Seamless bilinear lookup of all layers at one normal, as the hardware does it.
-/// @param table  [3][layers][6·size·size]   @return [3][layers]
+/// Bilinear lookup of all layers at one normal, as the hardware does it.
+/// @param table  [3][layers][layout.texelCount()]   @return [3][layers]
+std::vector<float> lookUpTable(std::span<const float> table, int layers, const TableLayout& layout,
+                               const Vec3d& normal);
+/// The same in the cube layout, seamless.
 std::vector<float> lookUpTable(std::span<const float> table, int layers, int size, const Vec3d& normal);
 
 }  // namespace prt

@@ -4,6 +4,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <tuple>
+
 #include "precompute/base/check.h"
 #include "precompute/base/error.h"
 #include "precompute/io/exr_conventions.h"
@@ -12,7 +15,6 @@
 namespace prt {
 namespace {
 
-constexpr int kMaxTableSize = 4096;
 constexpr const char* kColours = "RGB";
 
 /// Channel of a colour and layer; triple-product layers lie four to an RGBA layer, the mean last.
@@ -40,7 +42,7 @@ const char* tableKindName(TableKind kind) {
 }
 
 void writeTableFile(const std::string& path, const NormalTable& table) {
-    PRT_CHECK(table.size >= 1 && table.size <= kMaxTableSize);
+    PRT_CHECK(table.size >= TableLayout::minSize(table.layout) && table.size <= TableLayout::kMaxSize);
     PRT_CHECK(table.shOrder >= 1 && table.shOrder <= kMaxFileShOrder);
     if (table.kind == TableKind::LightCosine)
         PRT_CHECK_EQ(table.layers, table.shOrder * table.shOrder);
@@ -48,15 +50,14 @@ void writeTableFile(const std::string& path, const NormalTable& table) {
         PRT_CHECK(table.layers >= 2 && table.layers <= table.shOrder * table.shOrder + 1);
     PRT_CHECK_EQ(table.values.size(), size_t(3) * size_t(table.layers) * table.texels());
     ExrPartOut part;
-    part.width = table.size;
-    part.height = 6 * table.size;
+    std::tie(part.width, part.height) = std::tuple_cat(table.imageSize());
     part.attributes = conventionAttributes("normal-table", table.shOrder, table.attributes);
     part.attributes.strings["tableKind"] = tableKindName(table.kind);
-    part.attributes.strings["layout"] = "cube";
+    part.attributes.strings["layout"] = table.layout;
     part.attributes.ints["size"] = table.size;
     const bool triple = table.kind == TableKind::TripleProduct;
     if (triple) part.attributes.ints["componentCount"] = table.layers - 1;
-    const size_t rowBytes = size_t(table.size) * sizeof(float);
+    const size_t rowBytes = size_t(part.width) * sizeof(float);
     const std::vector<float> zeros(table.texels());
     for (int colour = 0; colour < 3; ++colour) {
         for (int layer = 0; layer < table.layers; ++layer)
@@ -77,18 +78,22 @@ NormalTable readTableFile(const std::string& path) {
     NormalTable table;
     table.attributes = checkConventions(part.attributes, "normal-table", path);
     table.kind = kindFromName(requireString(part.attributes, "tableKind", path), path);
-    if (const std::string& layout = requireString(part.attributes, "layout", path); layout != "cube")
-        throw InputError(path, fmt::format("is a table of unknown layout \"{}\"", layout));
+    table.layout = requireString(part.attributes, "layout", path);
+    if (std::find(TableLayout::names().begin(), TableLayout::names().end(), table.layout) ==
+        TableLayout::names().end())
+        throw InputError(path, fmt::format("is a table of unknown layout \"{}\"", table.layout));
     table.shOrder = requireInt(part.attributes, "shOrder", 1, kMaxFileShOrder, path);
-    table.size = requireInt(part.attributes, "size", 1, kMaxTableSize, path);
+    table.size =
+        requireInt(part.attributes, "size", TableLayout::minSize(table.layout), TableLayout::kMaxSize, path);
     const int components =
         table.kind == TableKind::LightCosine
             ? 0
             : requireInt(part.attributes, "componentCount", 1, table.shOrder * table.shOrder, path);
     table.layers = layersOf(table.kind, table.shOrder, components);
-    if (part.width != table.size || part.height != 6 * table.size)
-        throw InputError(path, fmt::format("has {} x {} pixels, a cube of size {} has {} x {}", part.width,
-                                           part.height, table.size, table.size, 6 * table.size));
+    const auto [width, height] = table.imageSize();
+    if (part.width != width || part.height != height)
+        throw InputError(path, fmt::format("has {} x {} pixels, layout {} of size {} has {} x {}", part.width,
+                                           part.height, table.layout, table.size, width, height));
     std::vector<ExrChannelIn> channels;
     for (int colour = 0; colour < 3; ++colour)
         for (int layer = 0; layer < table.layers; ++layer) {
@@ -96,8 +101,7 @@ NormalTable readTableFile(const std::string& path) {
             if (!part.channels.contains(name))
                 throw InputError(path, fmt::format("has no channel {}", name),
                                  "the file is damaged; make it again");
-            channels.push_back(
-                {name, ExrType::Float, nullptr, sizeof(float), size_t(table.size) * sizeof(float)});
+            channels.push_back({name, ExrType::Float, nullptr, sizeof(float), size_t(width) * sizeof(float)});
         }
     table.values.resize(size_t(3) * size_t(table.layers) * table.texels());
     for (size_t i = 0; i < channels.size(); ++i) channels[i].data = table.values.data() + i * table.texels();

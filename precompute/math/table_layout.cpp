@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <tuple>
 
 #include "precompute/base/check.h"
 #include "precompute/base/error.h"
@@ -19,29 +20,31 @@ const std::vector<std::string>& TableLayout::names() {
 
 int TableLayout::minSize(const std::string& name) { return name == "dual-paraboloid" ? 2 : 1; }
 
-TableLayout::TableLayout(const std::string& name, int size) : name_(name), size_(size) {
+TableLayout::Kind TableLayout::kindOf(const std::string& name) {
     const auto found = std::find(names().begin(), names().end(), name);
     if (found == names().end())
         throw InputError(fmt::format("table layout '{}'", name), "there is none of this name",
                          fmt::format("one of {}", fmt::join(names(), ", ")));
-    kind_ = Kind(std::distance(names().begin(), found));
+    return Kind(std::distance(names().begin(), found));
+}
+
+std::array<int, 2> TableLayout::imageSize(const std::string& name, int size) {
+    switch (kindOf(name)) {
+        case Kind::DualParaboloid:
+            return {2 * size, size};
+        case Kind::Octahedral:
+            return {size + 2, size + 2};
+        default:
+            return {size, 6 * size};
+    }
+}
+
+TableLayout::TableLayout(const std::string& name, int size) : name_(name), kind_(kindOf(name)), size_(size) {
     if (size < minSize(name) || size > kMaxSize)
         throw InputError(fmt::format("table layout {}", name),
                          fmt::format("size {} is outside {}..{}", size, minSize(name), kMaxSize));
     map_ = makeSphereMap(kind_ == Kind::Cube ? "cube-seamless" : name, size);
-    switch (kind_) {
-        case Kind::Cube:
-            width_ = size;
-            height_ = 6 * size;
-            break;
-        case Kind::DualParaboloid:
-            width_ = 2 * size;
-            height_ = size;
-            break;
-        case Kind::Octahedral:
-            width_ = height_ = size + 2;
-            break;
-    }
+    std::tie(width_, height_) = std::tuple_cat(imageSize(name, size));
 }
 
 int TableLayout::imageFromMap(int mapTexel) const {

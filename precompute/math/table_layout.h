@@ -13,6 +13,7 @@
 // with face, s and t as in math/sphere_map.h.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <string>
 #include <vector>
@@ -34,6 +35,9 @@ class TableLayout {
     /// Smallest size of a layout: 2 for dual-paraboloid, else 1.
     /// @param name  one of names()
     static int minSize(const std::string& name);
+    /// Width and height of a layout's image, texels.
+    /// @param name  one of names(), else InputError
+    static std::array<int, 2> imageSize(const std::string& name, int size);
 
     /// @param name  one of names()   @param size  texels along the side of a face, minSize(name)..kMaxSize
     /// @throws InputError  unknown name, size out of range
@@ -63,6 +67,7 @@ class TableLayout {
   private:
     enum class Kind { Cube, DualParaboloid, Octahedral };
 
+    static Kind kindOf(const std::string& name);
     int imageFromMap(int mapTexel) const;
     int mapFromImage(int texel) const;
 

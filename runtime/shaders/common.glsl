@@ -16,3 +16,25 @@ int cubeFace(vec3 direction, out vec2 point) {
     point = vec2(direction.z > 0.0 ? direction.x : -direction.x, -direction.y) / size.z;
     return direction.z > 0.0 ? 4 : 5;
 }
+
+/// Point in [-1, 1]² and square (0: +Z, 1: −Z) that a direction falls on; the dual-paraboloid layout of
+/// math/sphere_map.h. [IwanickiSloan2012, Appendix A], [ShirleyChiu1997]
+vec3 dualParaboloidPoint(vec3 direction) {
+    const vec3 unit = normalize(direction);
+    const float face = unit.z >= 0.0 ? 0.0 : 1.0;
+    const vec2 p = vec2(face == 0.0 ? unit.x : -unit.x, -unit.y);
+    const float radius = min(length(p) / (1.0 + abs(unit.z)), 1.0);
+    const bool wide = abs(p.x) >= abs(p.y);
+    const float large = wide ? p.x : p.y, small = wide ? p.y : p.x;
+    const float along = large < 0.0 ? -radius : radius;
+    const float across = large == 0.0 ? 0.0 : along * (4.0 / kPi) * atan(small / large);
+    return vec3(wide ? vec2(along, across) : vec2(across, along), face);
+}
+
+/// Point in [-1, 1]² that a direction falls on; the octahedral layout of math/sphere_map.h.
+vec2 octahedralPoint(vec3 direction) {
+    const vec3 size = abs(direction);
+    vec2 p = size.xy / (size.x + size.y + size.z);
+    if (direction.z < 0.0) p = 1.0 - p.yx;
+    return vec2(direction.x < 0.0 ? -p.x : p.x, direction.y > 0.0 ? -p.y : p.y);
+}

@@ -5,19 +5,46 @@ layout(binding = 1) uniform sampler2D normals;
 layout(binding = 2) uniform sampler2D albedos;
 layout(binding = 3) uniform usampler2D triangles;
 layout(binding = 4) uniform sampler2DArray coefficients;  // [layers], four coefficients each
-layout(binding = 5) uniform sampler2DArray table;         // [(3·layers (+ 1)) × 6 faces], with a border of 1
+layout(binding = 5) uniform sampler2DArray table;         // [3·layers (+ 1)] images of the layout
 layout(binding = 6) uniform usamplerBuffer indices;
 
 uniform int layers;
-uniform int tableSize;  // texels along an edge of a face, without the border
+uniform int tableSize;  // texels along the side of a face, without a border
 uniform ivec2 gridSize;
 
 layout(location = 0) out vec4 outRadiance;
 layout(location = 1) out vec4 outIrradiance;
 
-/// Image point in [0, 1]² of a point in [-1, 1]² of a face, which lies within a border of one texel.
-vec2 borderedPoint(vec2 facePoint) {
-    return ((facePoint * 0.5 + 0.5) * float(tableSize) + 1.0) / float(tableSize + 2);
+// Images that one group of four coefficients has, and where a normal falls on: the point in [0, 1]² and which of
+// these images. Layouts as in math/table_layout.h.
+#if defined(TABLE_DUAL_PARABOLOID)
+const int kGroupImages = 1;
+
+vec3 tablePoint(vec3 normal) {
+    const vec3 st = dualParaboloidPoint(normal);
+    const float size = float(tableSize);
+    const vec2 texel = 0.5 + (0.5 * st.xy + 0.5) * (size - 1.0);
+    return vec3((st.z * size + texel.x) / (2.0 * size), texel.y / size, 0.0);
+}
+#elif defined(TABLE_OCTAHEDRAL)
+const int kGroupImages = 1;
+
+vec3 tablePoint(vec3 normal) {
+    const vec2 texel = 1.0 + (0.5 * octahedralPoint(normal) + 0.5) * float(tableSize);
+    return vec3(texel / float(tableSize + 2), 0.0);
+}
+#else
+const int kGroupImages = 6;  // each within a border of one texel of its neighbours
+
+vec3 tablePoint(vec3 normal) {
+    vec2 point;
+    const int face = cubeFace(normal, point);
+    return vec3(((point * 0.5 + 0.5) * float(tableSize) + 1.0) / float(tableSize + 2), face);
+}
+#endif
+
+vec4 tableAt(vec3 point, int group) {
+    return textureLod(table, vec3(point.xy, float(kGroupImages * group) + point.z), 0.0);
 }
 
 #ifdef PER_VERTEX
@@ -54,18 +81,15 @@ vec4 coefficientsAt(Points point, int layer) { return textureLod(coefficients, v
 void main() {
     const ivec2 pixel = ivec2(gl_FragCoord.xy);
     const Points points = pointsAt(pixel, texelFetch(places, pixel, 0));
-    vec2 facePoint;
-    const int face = cubeFace(texelFetch(normals, pixel, 0).xyz, facePoint);
-    const vec2 normal = borderedPoint(facePoint);
+    const vec3 normal = tablePoint(texelFetch(normals, pixel, 0).xyz);
     vec3 irradiance = vec3(0.0);
 #ifdef WITH_MEAN
-    irradiance = textureLod(table, vec3(normal, 18 * layers + face), 0.0).rgb;
+    irradiance = tableAt(normal, 3 * layers).rgb;
 #endif
     for (int i = 0; i < layers; ++i) {
         const vec4 k = coefficientsAt(points, i);
-        irradiance += vec3(dot(k, textureLod(table, vec3(normal, 6 * i + face), 0.0)),
-                           dot(k, textureLod(table, vec3(normal, 6 * (layers + i) + face), 0.0)),
-                           dot(k, textureLod(table, vec3(normal, 6 * (2 * layers + i) + face), 0.0)));
+        irradiance += vec3(dot(k, tableAt(normal, i)), dot(k, tableAt(normal, layers + i)),
+                           dot(k, tableAt(normal, 2 * layers + i)));
     }
     // Measured as it is; shown without the negative lobes that truncation leaves in the dark.
     outIrradiance = vec4(irradiance, 1.0);

@@ -6,8 +6,8 @@
 
 #include <gtest/gtest.h>
 
-#include "compress/export_bundle.h"
 #include "compress/compress_job.h"
+#include "compress/export_bundle.h"
 #include "compress/tabulate_job.h"
 #include "precompute/base/atomic_file.h"
 #include "precompute/io/bundle.h"
@@ -57,7 +57,7 @@ class Export : public testing::Test {
         settings.bundlePath = bundle();
         settings.environments = {"sky:clear"};
         settings.kind = kind;
-        settings.size = 8;
+        settings.table.size = 8;
         runTabulate(settings);
     }
     ExportSettings settings() const {

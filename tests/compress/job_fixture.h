@@ -79,7 +79,7 @@ class Jobs : public testing::Test {
         return path.string();
     }
     TabulateSettings tabulate(std::vector<std::string> environments, std::string kind) const {
-        return {bundle_, std::move(environments), std::move(kind), "cube", 8};
+        return {bundle_, std::move(environments), std::move(kind), {"cube", 8}};
     }
     template <class Failure, class Run>
     void expectRefused(const Run& run, const std::vector<std::string>& words) const {

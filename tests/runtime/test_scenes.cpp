@@ -154,8 +154,10 @@ NormalTable tripleProductTable(const NormalTable& lightCosine, const PcaMap& pca
     return table;
 }
 
-NormalTable noisyTable(TableKind kind, int shOrder, int layers, int size, unsigned seed) {
+NormalTable noisyTable(TableKind kind, int shOrder, int layers, int size, unsigned seed,
+                       const std::string& layout) {
     NormalTable table;
+    table.layout = layout;
     table.kind = kind;
     table.size = size;
     table.shOrder = shOrder;
@@ -164,6 +166,18 @@ NormalTable noisyTable(TableKind kind, int shOrder, int layers, int size, unsign
     std::uniform_real_distribution<float> value(-1, 1);
     table.values.resize(size_t(3) * size_t(layers) * table.texels());
     for (float& v : table.values) v = value(random);
+    // Texels of the border repeat the one that a lookup at their normal finds.
+    const TableLayout texels(layout, size);
+    for (int t = 0; layout == "octahedral" && t < texels.texelCount(); ++t) {
+        const SphereTaps taps = texels.taps(texels.normal(t));
+        const int same =
+            std::max_element(taps.begin(), taps.end(), [](const SphereTap& a, const SphereTap& b) {
+                return a.weight < b.weight;
+            })->texel;
+        for (size_t layer = 0; layer < size_t(3 * layers); ++layer)
+            table.values[layer * table.texels() + size_t(t)] =
+                table.values[layer * table.texels() + size_t(same)];
+    }
     return table;
 }
 

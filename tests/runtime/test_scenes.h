@@ -42,7 +42,8 @@ NormalTable lightCosineTable(const std::function<Vec3f(const Vec3d&)>& light, in
 /// Triple-product table of the same light for a basis.
 NormalTable tripleProductTable(const NormalTable& lightCosine, const PcaMap& pca);
 /// A table of noise of any shape.
-NormalTable noisyTable(TableKind kind, int shOrder, int layers, int size, unsigned seed);
+NormalTable noisyTable(TableKind kind, int shOrder, int layers, int size, unsigned seed,
+                       const std::string& layout = "cube");
 
 /// All n² unit vectors as the basis and a mean of m: weights are the coefficients less m.
 PcaMap completePca(const VisibilityMap& visibility, float mean);
