@@ -10,6 +10,7 @@
 #include "precompute/base/error.h"
 #include "precompute/io/exr_conventions.h"
 #include "precompute/io/exr_file.h"
+#include "precompute/io/point_channels.h"
 #include "precompute/io/projection_attributes.h"
 
 namespace prt {
@@ -17,77 +18,7 @@ namespace {
 
 static_assert(sizeof(Validity) == sizeof(uint32_t));
 
-size_t gridPixels(const PointGrid& grid) { return size_t(grid.width) * size_t(grid.height); }
-
-void checkGrid(const PointGrid& grid) {
-    PRT_CHECK(grid.width > 0 && grid.height > 0);
-    if (grid.domain == PointDomain::Texel) PRT_CHECK_EQ(grid.count, gridPixels(grid));
-    PRT_CHECK_LE(grid.count, gridPixels(grid));
-}
-
-void setDomain(const PointGrid& grid, ExrAttributes& attributes) {
-    attributes.strings["domain"] = pointDomainName(grid.domain);
-    if (grid.domain == PointDomain::Vertex) attributes.ints["vertexCount"] = int(grid.count);
-}
-
-PointGrid readGrid(const ExrPartInfo& part, const std::string& path) {
-    const std::string& domain = requireString(part.attributes, "domain", path);
-    if (domain == pointDomainName(PointDomain::Texel))
-        return {PointDomain::Texel, part.width, part.height, size_t(part.width) * size_t(part.height)};
-    if (domain != pointDomainName(PointDomain::Vertex))
-        throw InputError(path, fmt::format("has points of an unknown domain \"{}\"", domain));
-    const int64_t pixels = int64_t(part.width) * part.height;
-    const int count =
-        requireInt(part.attributes, "vertexCount", 0, int(std::min<int64_t>(pixels, INT32_MAX)), path);
-    const PointGrid grid = vertexGrid(size_t(count));
-    if (grid.width != part.width || grid.height != part.height)
-        throw InputError(path, fmt::format("has {} x {} pixels for {} vertices, expected {} x {}", part.width,
-                                           part.height, count, grid.width, grid.height));
-    return grid;
-}
-
-/// Values of [count×components], with zeros behind the last point where the grid is larger.
-template <class Value>
-class PaddedPoints {
-  public:
-    PaddedPoints(const std::vector<Value>& values, const PointGrid& grid, size_t components) {
-        PRT_CHECK_EQ(values.size(), grid.count * components);
-        data_ = values.data();
-        if (grid.count == gridPixels(grid)) return;
-        padded_ = values;
-        padded_.resize(gridPixels(grid) * components);
-        data_ = padded_.data();
-    }
-    const Value* data() const { return data_; }
-
-  private:
-    const Value* data_;
-    std::vector<Value> padded_;
-};
-
-/// Channels over interleaved 4-byte values.
-/// @param names  one per component
-template <class Channel, class Pointer>
-void addInterleaved(std::vector<Channel>& channels, const std::vector<std::string>& names, ExrType type,
-                    Pointer data, int width, size_t stride) {
-    for (size_t i = 0; i < names.size(); ++i)
-        channels.push_back({names[i], type, data + i, stride * 4, size_t(width) * stride * 4});
-}
-
-std::vector<std::string> indexedNames(const std::string& prefix, int count) {
-    std::vector<std::string> names;
-    for (int i = 0; i < count; ++i) names.push_back(indexedName(prefix, i));
-    return names;
-}
-
 const std::vector<std::string> kNormalNames{"normal.X", "normal.Y", "normal.Z"};
-
-void checkChannels(const ExrPartInfo& part, const std::vector<std::string>& names, const std::string& path) {
-    for (const std::string& name : names)
-        if (!part.channels.contains(name))
-            throw InputError(path, fmt::format("has no channel {}", name),
-                             "the file is damaged; make it again");
-}
 
 void checkValidity(const std::vector<Validity>& validity, size_t first, const std::string& path) {
     for (size_t i = 0; i < validity.size(); ++i)
