@@ -2,15 +2,19 @@
 #include "compress/compress_job.h"
 
 #include <cmath>
+#include <functional>
 
 #include "compress/choose_components.h"
 #include "compress/irradiance_weights.h"
 #include "compress/pca.h"
+#include "compress/point_areas.h"
 #include "compress/relit_error.h"
 #include "compress/tables/normal_tables.h"
 #include "precompute/base/error.h"
 #include "precompute/io/environment_file.h"
+#include "precompute/io/glb.h"
 #include "precompute/math/directions.h"
+#include "tests/base/small_disk.h"
 #include "tests/compress/job_fixture.h"
 
 namespace prt {
@@ -259,6 +263,110 @@ TEST_F(Jobs, CompressRefusesWhatItCannotUse) {
     expectRefused<InputError>([&] { runCompress({bundle_, 4}); }, {"point 6"});
     fs::resize_file(fs::path(bundle_) / "visibility.exr", 100);
     expectRefused<InputError>([&] { runCompress({bundle_, 4}); }, {"visibility.exr"});
+}
+
+TEST_F(Jobs, CovarianceIsChosenRecordedAndMadeAgainWhenItChanges) {
+    VisibilityMap map = testVisibility(4, 21, 50, 40);
+    map.projection = Projection{};
+    writeBundle(map);
+    CompressSettings settings{bundle_, 5};
+    const CompressReport irradiance = runCompress(settings);
+    const PcaMap first = readPcaFile(bundle_ + "/pca.exr");
+    EXPECT_EQ(first.attributes.at("covariance"), "irradiance");
+    EXPECT_THAT(Bundle::open(bundle_).find("pca.exr")->madeBy, testing::HasSubstr("--covariance irradiance"));
+    settings.covariance = "plain";
+    const CompressReport plain = runCompress(settings);
+    EXPECT_FALSE(plain.upToDate);
+    EXPECT_TRUE(runCompress(settings).upToDate);
+    const PcaMap second = readPcaFile(bundle_ + "/pca.exr");
+    EXPECT_EQ(second.attributes.at("covariance"), "plain");
+    EXPECT_NE(first.basis, second.basis);
+    EXPECT_LT(irradiance.irradianceRelativeRmse, plain.irradianceRelativeRmse);
+    // Plain vectors are those that explain most.
+    EXPECT_GE(plain.explainedVariance, irradiance.explainedVariance);
+    settings.covariance = "best";
+    expectRefused<UsageError>([&] { runCompress(settings); }, {"--covariance", "best", "irradiance"});
+}
+
+// A square of two triangles, of which the one in the lower left has nine times the density.
+Scene unevenSquare() {
+    Scene scene;
+    scene.positions = {{0, 0, 0}, {1, 0, 0}, {0, 0, 1}, {1, 0, 0}, {0, 0, 1}, {1, 0, -17}};
+    scene.uv1 = {{0, 0}, {1, 0}, {0, 1}, {1, 0}, {0, 1}, {1, 1}};
+    scene.normals.assign(6, Vec3f(0, 1, 0));
+    scene.indices = {0, 2, 1, 3, 4, 5};
+    scene.materials.emplace_back();
+    scene.primitives = {{0, 6, 0, 6, 0}};
+    return scene;
+}
+
+TEST_F(Jobs, AreaWeightedPointsCountAsTheirSurface) {
+    const VisibilityMap map = testVisibility(3, 22);
+    writeBundle(map);
+    CompressSettings settings{bundle_, 4};
+    settings.areaWeighted = true;
+    expectRefused<InputError>([&] { runCompress(settings); }, {"mesh.glb"});
+    {
+        BundleTransaction transaction(bundle_, false);
+        writeGlb(unevenSquare(), transaction.stage("mesh.glb", {}, "prt precompute thing.obj").string());
+        transaction.commit();
+    }
+    const CompressReport report = runCompress(settings);
+    EXPECT_TRUE(runCompress(settings).upToDate);
+    const PcaMap pca = readPcaFile(bundle_ + "/pca.exr");
+    EXPECT_EQ(pca.attributes.at("pointsCount"), "area");
+    const Bundle bundle = Bundle::open(bundle_);
+    EXPECT_EQ(bundle.find("pca.exr")->madeFrom.at("mesh.glb"), bundle.find("mesh.glb")->xxh3);
+    EXPECT_THAT(bundle.find("pca.exr")->madeBy, testing::HasSubstr("--area-weighted"));
+
+    std::vector<float> areas;
+    PointAreas(unevenSquare(), map.grid).evaluate(0, map.grid.height, areas);
+    std::vector<uint8_t> valid;
+    for (const Validity validity : map.validity) valid.push_back(validity == Validity::Valid);
+    const PcaResult expected = computePca(map.coefficients, valid, 9, 4, areas);
+    EXPECT_EQ(pca.mean, expected.mean);
+    EXPECT_EQ(pca.basis, expected.basis);
+    EXPECT_EQ(report.explainedVariance, expected.explainedVariance);
+    settings.areaWeighted = false;
+    EXPECT_FALSE(runCompress(settings).upToDate);
+    EXPECT_NE(readPcaFile(bundle_ + "/pca.exr").basis, pca.basis);
+    EXPECT_EQ(Bundle::open(bundle_).find("pca.exr")->madeFrom.count("mesh.glb"), 0u);
+}
+
+TEST_F(Jobs, FullDisksLeaveTheBundleAsItWas) {
+    writeBundle(testVisibility(4, 23));
+    runCompress({bundle_, 3});
+    // Nowhere to write, room for the head of the file, room for some rows.
+    for (const rlim_t bytes : {0, 600, 5000}) {
+        const SmallDisk disk(bytes);
+        expectRefused<OutputError>([&] { runCompress({bundle_, 16}); }, {});
+    }
+    EXPECT_EQ(runCompress({bundle_, 16}).components, 16);
+}
+
+TEST_F(Jobs, FilesCutOrDamagedAmongTheirRowsAreRefused) {
+    const VisibilityMap map = testVisibility(4, 24, 40, 70);  // five chunks
+    const auto stageDamaged = [&](const std::function<void(const fs::path&)>& damage) {
+        fs::remove_all(bundle_);
+        BundleTransaction transaction(bundle_, true);
+        const fs::path staged = transaction.stage("visibility.exr", {}, "prt precompute thing.obj");
+        writeVisibilityFile(staged.string(), map);
+        damage(staged);
+        transaction.commit();
+    };
+    stageDamaged([](const fs::path&) {});
+    const size_t bytes = fs::file_size(fs::path(bundle_) / "visibility.exr");
+    for (const double share : {0.3, 0.6, 0.9, 0.999}) {
+        stageDamaged([&](const fs::path& path) { fs::resize_file(path, size_t(share * double(bytes))); });
+        expectRefused<InputError>([&] { runCompress({bundle_, 4}); }, {"visibility.exr", "damaged"});
+        EXPECT_FALSE(fs::exists(fs::path(bundle_) / "pca.exr"));
+    }
+    stageDamaged([&](const fs::path& path) {  // the last chunk does not decompress
+        std::fstream file(path, std::ios::in | std::ios::out | std::ios::binary);
+        file.seekp(std::streamoff(bytes) - 400);
+        file.write(std::string(300, 'x').data(), 300);
+    });
+    expectRefused<InputError>([&] { runCompress({bundle_, 4}); }, {"visibility.exr", "damaged"});
 }
 
 }  // namespace

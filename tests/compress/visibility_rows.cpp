@@ -279,5 +279,53 @@ TEST(VisibilityOnDisk, EqualsMemory) {
     }
 }
 
+// Ctrl-C in the midst of either pass.
+TEST(VisibilityOnDisk, InterruptsEndBothPasses) {
+    const TemporaryDirectory directory;
+    const std::string path = directory.file("v.exr"), out = directory.file("p.exr");
+    const PointGrid grid = vertexGrid(300000);
+    Points points{std::vector<float>(grid.count * 9, 0.25f), std::vector<Vec3f>(grid.count, Vec3f(0, 1, 0))};
+    points.rows[0] = 1;
+    writeVisibilityFile(path, mapOf(points, grid, Projection{}));
+    size_t bands = 0;
+    const VisibilityOnDisk interrupted(path, [&](int, int rows, std::vector<float>& weights) {
+        weights.assign(size_t(rows) * size_t(kVertexRowLength), 1.0f);
+        ++bands;
+        requestInterrupt();
+    });
+    EXPECT_THROW(VisibilityStatistics(interrupted, Projection{}), Interrupted);
+    EXPECT_EQ(bands, 1u);
+    clearInterrupt();
+
+    const VisibilityOnDisk file(path);
+    const PcaResult pca = VisibilityStatistics(file, Projection{}).basis({1, WeightsFit::Plain, {}});
+    size_t taken = 0;
+    {
+        PcaMap map;
+        map.grid = grid;
+        map.shOrder = kOrder;
+        map.components = 1;
+        map.mean = pca.mean;
+        map.basis = pca.basis;
+        map.variance = pca.variance;
+        PcaWriter writer(out, map);
+        EXPECT_THROW(compressRows(file, Projection{}, pca, WeightsFit::Plain,
+                                  [&](std::span<const float> weights) {
+                                      writer.write(weights);
+                                      ++taken;
+                                      requestInterrupt();
+                                  }),
+                     Interrupted);
+        clearInterrupt();
+    }
+    EXPECT_EQ(taken, 1u);
+    size_t files = 0;
+    for (const auto& entry : std::filesystem::directory_iterator(directory.path())) {
+        EXPECT_EQ(entry.path().string(), path);
+        ++files;
+    }
+    EXPECT_EQ(files, 1u);
+}
+
 }  // namespace
 }  // namespace prt
