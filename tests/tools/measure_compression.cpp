@@ -198,10 +198,14 @@ TEST(CompressionClaims, HoldWhereCompressionLosesLessThanTruncation) {
     ASSERT_EQ(lights.size(), 2u);
     EXPECT_EQ(lights[0].lowest, 0.01);  // light of one band does not count
     EXPECT_EQ(lights[0].highest, 0.012);
+    EXPECT_EQ(lights[0].lowestSeen, 0.012);  // 3 bands are fewer than 4 + 2
+    EXPECT_EQ(lights[0].highestSeen, 0.012);
+    EXPECT_TRUE(std::isnan(lights[1].highestSeen));
     const std::string text = verdictText(madeUp());
     EXPECT_NE(text.find("12 vectors for order 4: enough"), std::string::npos) << text;
     EXPECT_NE(text.find("24 vectors for order 6: not enough"), std::string::npos) << text;
-    EXPECT_NE(text.find("Order 4, 12 vectors, by bands of the light: 0.0100 to 0.0120, not sensitive"),
+    EXPECT_NE(text.find("Order 4, 12 vectors, by bands of the light: 0.0100 to 0.0120, not sensitive (ratio "
+                        "1.20; from 6 bands on 1.00)"),
               std::string::npos)
         << text;
     EXPECT_NE(text.find("Order 6, 16 vectors, by bands of the light: 0.0100 to 0.0200, sensitive"),
@@ -218,11 +222,11 @@ TEST(CompressionTables, PutTransferMatricesBeside) {
     EXPECT_EQ(std::get<std::string>(table.cell(3, "method")), "transfer-half-life-2");
     EXPECT_EQ(std::get<uint64_t>(table.cell(3, "bytes_per_point")), 96u);
     const Figure figure = compressionFigure(madeUp());
-    ASSERT_EQ(figure.panels.size(), 5u);
+    ASSERT_EQ(figure.panels.size(), 6u);
     EXPECT_EQ(figure.panels[0].series.size(), 4u);
     EXPECT_EQ(figure.panels[0].series[0].points.size(), 2u);
     EXPECT_EQ(figure.panels[0].series[1].points.size(), 1u);
-    EXPECT_FALSE(figure.panels[4].bars.empty());
+    EXPECT_FALSE(figure.panels[5].bars.empty());
 }
 
 void run(std::vector<std::string> arguments) {

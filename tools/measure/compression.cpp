@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "compress/quantize.h"
@@ -173,7 +174,8 @@ CompressionResult studyCompression(CompressionScene& scene, const std::vector<En
 
 std::vector<CompressionClaim> checkClaims(const CompressionResult& result) {
     std::vector<CompressionClaim> claims;
-    for (const auto& [shOrder, components] : {std::pair{4, 12}, std::pair{6, 16}, std::pair{6, 24}}) {
+    for (const std::pair<int, int>& said : {std::pair{4, 12}, std::pair{6, 16}, std::pair{6, 24}}) {
+        const int shOrder = said.first, components = said.second;
         const auto order = std::find_if(result.orders.begin(), result.orders.end(),
                                         [&](const CompressionOrder& o) { return o.shOrder == shOrder; });
         if (order == result.orders.end()) continue;
@@ -196,13 +198,18 @@ std::vector<CompressionClaim> checkClaims(const CompressionResult& result) {
 }
 
 std::vector<LightSensitivity> lightSensitivity(const CompressionResult& result) {
+    constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
     std::vector<LightSensitivity> all;
     for (const LightOrderRow& row : result.lights) {
         if (row.lightOrder < 3) continue;
         if (all.empty() || all.back().shOrder != row.shOrder || all.back().components != row.components)
-            all.push_back({row.shOrder, row.components, row.compression, row.compression});
-        all.back().lowest = std::min(all.back().lowest, row.compression);
-        all.back().highest = std::max(all.back().highest, row.compression);
+            all.push_back({row.shOrder, row.components, row.compression, row.compression, kNone, kNone});
+        LightSensitivity& last = all.back();
+        last.lowest = std::min(last.lowest, row.compression);
+        last.highest = std::max(last.highest, row.compression);
+        if (row.lightOrder < row.shOrder + 2) continue;
+        last.lowestSeen = std::fmin(last.lowestSeen, row.compression);  // these two pass over NaN
+        last.highestSeen = std::fmax(last.highestSeen, row.compression);
     }
     return all;
 }

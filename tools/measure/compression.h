@@ -83,10 +83,12 @@ struct CompressionClaim {
 /// @source [IwanickiSloan2012, Sec. 5]
 std::vector<CompressionClaim> checkClaims(const CompressionResult& result);
 
-/// How far errors under light of 3 and more bands lie apart, for one order and number of vectors.
+/// How far errors under light of 3 and more bands lie apart, for one order and number of vectors. Visibility
+/// of n bands meets n + 2 bands of light, but for what the cosine has beyond its third.
 struct LightSensitivity {
-    int shOrder, components;
-    double lowest, highest;  ///< LightOrderRow::compression
+    int shOrder = 0, components = 0;
+    double lowest = 0, highest = 0;          ///< LightOrderRow::compression
+    double lowestSeen = 0, highestSeen = 0;  ///< of light with n + 2 bands or more; NaN: none was measured
 };
 std::vector<LightSensitivity> lightSensitivity(const CompressionResult& result);
 

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <set>
 
@@ -25,21 +26,26 @@ std::vector<int> ordersOf(const CompressionResult& result) {
     return orders;
 }
 
-template <class Value>
-Panel bytesPanel(const CompressionResult& result, const std::string& title, const std::string& label,
-                 bool logY, const Value& value) {
-    Panel panel{.title = title, .xLabel = "bytes of a point", .yLabel = label, .logX = true, .logY = logY};
+// Two series for each order: vectors, and the one point without compression.
+template <class X, class Y>
+std::vector<Series> seriesOf(const CompressionResult& result, const X& x, const Y& y) {
+    std::vector<Series> all;
     for (const int shOrder : ordersOf(result)) {
         Series curve{.name = fmt::format("order {}, vectors", shOrder), .points = {}},
             point{.name = fmt::format("order {}, uncompressed", shOrder), .points = {}};
         for (const CompressionRow& row : result.rows)
             if (row.shOrder == shOrder)
-                (row.components > 0 ? curve : point).points.push_back({double(row.bytes), value(row)});
-        panel.series.push_back(std::move(curve));
-        panel.series.push_back(std::move(point));
+                (row.components > 0 ? curve : point).points.push_back({x(row), y(row)});
+        all.push_back(std::move(curve));
+        all.push_back(std::move(point));
     }
-    return panel;
+    return all;
 }
+
+double bytesOf(const CompressionRow& row) { return double(row.bytes); }
+double fetchesOf(const CompressionRow& row) { return double(row.cost.fetches); }
+double shippedOf(const CompressionRow& row) { return row.shipped; }
+double truthOf(const CompressionRow& row) { return row.truth; }
 
 Panel lightPanel(const CompressionResult& result) {
     Panel panel{.title = "By bands of the light",
@@ -102,11 +108,11 @@ Table lightTable(const CompressionResult& result) {
 }
 
 Table sensitivityTable(const CompressionResult& result) {
-    Table table({"order", "components", "lowest_rmse", "highest_rmse", "ratio"});
+    Table table({"order", "components", "lowest_rmse", "highest_rmse", "ratio", "ratio_seen"});
     for (const LightSensitivity& row : lightSensitivity(result))
         if (row.components < shCount(row.shOrder))
             table.add({uint64_t(row.shOrder), uint64_t(row.components), row.lowest, row.highest,
-                       row.highest / row.lowest});
+                       row.highest / row.lowest, row.highestSeen / row.lowestSeen});
     return table;
 }
 
@@ -160,23 +166,40 @@ std::string verdictText(const CompressionResult& result) {
     for (const LightSensitivity& row : lightSensitivity(result)) {
         if (row.components == shCount(row.shOrder)) continue;
         const double ratio = row.highest / row.lowest;
-        text +=
-            fmt::format("Order {}, {} vectors, by bands of the light: {:.4f} to {:.4f}, {} (ratio {:.2f})\n",
-                        row.shOrder, row.components, row.lowest, row.highest,
-                        ratio > kSensitive ? "sensitive" : "not sensitive", ratio);
+        text += fmt::format("Order {}, {} vectors, by bands of the light: {:.4f} to {:.4f}, {} (ratio {:.2f}",
+                            row.shOrder, row.components, row.lowest, row.highest,
+                            ratio > kSensitive ? "sensitive" : "not sensitive", ratio);
+        const double seen = row.highestSeen / row.lowestSeen;
+        text += std::isfinite(seen) ? fmt::format("; from {} bands on {:.2f})\n", row.shOrder + 2, seen)
+                                    : std::string(")\n");
     }
     return text;
 }
 
 Figure compressionFigure(const CompressionResult& result) {
     Figure figure{.title = "Compression of visibility", .columns = 2, .panels = {}};
-    figure.panels.push_back(bytesPanel(result, "Against uncompressed visibility of the order",
-                                       "relative RMSE of irradiance", true,
-                                       [](const CompressionRow& row) { return row.shipped; }));
-    figure.panels.push_back(bytesPanel(result, "Against ray-traced truth", "relative RMSE of irradiance",
-                                       true, [](const CompressionRow& row) { return row.truth; }));
-    figure.panels.push_back(bytesPanel(result, "Work of a pixel", "texture fetches", false,
-                                       [](const CompressionRow& row) { return double(row.cost.fetches); }));
+    const char* const error = "relative RMSE of irradiance";
+    const char* const bytes = "bytes of a point";
+    figure.panels.push_back({.title = "Against uncompressed visibility of the order",
+                             .xLabel = bytes,
+                             .yLabel = error,
+                             .logX = true,
+                             .logY = true,
+                             .series = seriesOf(result, bytesOf, shippedOf)});
+    figure.panels.push_back({.title = "Against ray-traced truth",
+                             .xLabel = bytes,
+                             .yLabel = error,
+                             .logX = true,
+                             .series = seriesOf(result, bytesOf, truthOf)});
+    figure.panels.push_back({.title = "Work of a pixel",
+                             .xLabel = bytes,
+                             .yLabel = "texture fetches",
+                             .logX = true,
+                             .series = seriesOf(result, bytesOf, fetchesOf)});
+    figure.panels.push_back({.title = "Error for work",
+                             .xLabel = "texture fetches",
+                             .yLabel = error,
+                             .series = seriesOf(result, fetchesOf, truthOf)});
     figure.panels.push_back(lightPanel(result));
     Panel bars{.title = "Storage beside transfer matrices", .yLabel = "bytes of a point", .logY = true};
     int group = 0;
