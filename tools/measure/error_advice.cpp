@@ -1,0 +1,136 @@
+// From gains to commands.
+#include "tools/measure/error_advice.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "compress/renewal_command.h"
+#include "precompute/math/sh.h"
+
+namespace prt::tools {
+namespace {
+
+constexpr int kLargestTable = 256;
+constexpr double kSmallestError = 1e-4;  // of prt precompute --error
+constexpr int kMoreBands = 2;
+
+// What turns a stage's knob one notch; empty where there is none to turn.
+class Knobs {
+  public:
+    Knobs(const std::string& path, const JudgedBundle& bundle, const ErrorResult& result,
+          const ErrorStudy& study, const std::vector<std::string>& sources)
+        : path_(shellWord(path)), bundle_(bundle), result_(result), study_(study), sources_(sources) {}
+
+    std::string command(ErrorStage stage) const {
+        switch (stage) {
+            case ErrorStage::Sampling:
+                return finerSampling();
+            case ErrorStage::Truncation:
+                return moreBands();
+            case ErrorStage::Projection:
+                return bundle_.visibility.projection.kind == ProjectionKind::Plain
+                           ? withOption(bundle_.bakeCommand, "--projection", "irradiance")
+                           : "";
+            case ErrorStage::Pca:
+                return moreVectors();
+            case ErrorStage::Quantisation:
+                return finerFormats();
+            case ErrorStage::Tables:
+                return finerTables();
+        }
+        return "";
+    }
+
+  private:
+    std::string finerSampling() const {
+        const auto& attributes = bundle_.visibility.attributes;
+        const auto bound = attributes.find("errorBound");
+        if (bound != attributes.end()) {
+            const double error = std::atof(bound->second.c_str()) / 2;
+            return error < kSmallestError
+                       ? ""
+                       : withOption(bundle_.bakeCommand, "--error", fmt::format("{:g}", error));
+        }
+        const auto rays = attributes.find("rays");
+        const int count = rays == attributes.end() ? 0 : std::atoi(rays->second.c_str());
+        if (count <= 0) return withOption(bundle_.bakeCommand, "--error", "0.005");
+        if (count > kMaxBakeRays / 2) return "";
+        return withOption(bundle_.bakeCommand, "--rays", std::to_string(2 * count));
+    }
+    std::string moreBands() const {
+        const int shOrder = bundle_.visibility.shOrder;
+        if (shOrder >= kMaxBundleShOrder) return "";
+        return withOption(bundle_.bakeCommand, "--order",
+                          std::to_string(std::min(kMaxBundleShOrder, shOrder + kMoreBands)));
+    }
+    std::string moreVectors() const {
+        const int all = shCount(bundle_.visibility.shOrder), now = result_.components;
+        if (!result_.isCompressed || now >= all) return "";
+        return fmt::format("prt compress {} --components {}", path_,
+                           std::min(all, std::max(now + 4, now * 3 / 2)));
+    }
+    std::string finerFormats() const {
+        const bool isOfWeights = result_.mean.weights.relativeRmse >= result_.mean.tableFormat.relativeRmse;
+        if (isOfWeights && study_.weights != "float")
+            return fmt::format("prt export {} -o FOLDER --weights {} --tables {}", path_,
+                               study_.weights == "unorm8" && result_.isCompressed ? "unorm16" : "float",
+                               study_.tables.format);
+        if (study_.tables.format == "float") return "";
+        return fmt::format("prt export {} -o FOLDER --weights {} --tables {}", path_, study_.weights,
+                           study_.tables.format == "half" ? "float" : "half");
+    }
+    std::string finerTables() const {
+        const bool isOfBands = result_.mean.bands.relativeRmse > result_.mean.lookup.relativeRmse;
+        if (!isOfBands && 2 * study_.tables.size > kLargestTable) return "";
+        if (isOfBands && study_.tables.cosineBands >= kTableCosineBands) return "";
+        std::string environments;
+        for (const std::string& source : sources_) environments.append(1, ' ').append(shellWord(source));
+        if (sources_.empty()) environments = " sky:clear sky:overcast sky:sunset";
+        return fmt::format("prt tabulate {}{} --kind {} --size {}", path_, environments,
+                           result_.isCompressed ? "triple-product" : "light-cosine",
+                           isOfBands ? study_.tables.size : 2 * study_.tables.size);
+    }
+
+    std::string path_;
+    const JudgedBundle& bundle_;
+    const ErrorResult& result_;
+    const ErrorStudy& study_;
+    const std::vector<std::string>& sources_;
+};
+
+}  // namespace
+
+std::string withOption(const std::string& command, const std::string& option, const std::string& value) {
+    const std::string key = " " + option + " ";
+    const size_t at = command.find(key);
+    if (at == std::string::npos) return command + key + value;
+    const size_t begin = at + key.size(), end = std::min(command.find(' ', begin), command.size());
+    return command.substr(0, begin) + value + command.substr(end);
+}
+
+ErrorAdvice adviseOnErrors(const std::string& path, const JudgedBundle& bundle, const ErrorResult& result,
+                           const ErrorStudy& study, const std::vector<std::string>& sources) {
+    const Knobs knobs(path, bundle, result, study, sources);
+    ErrorAdvice advice;
+    advice.stage = "none";
+    for (size_t s = 0; s < kErrorStages; ++s) {
+        const ErrorStage stage = ErrorStage(s);
+        const double gain = result.mean.gain(stage), noise = result.mean.without[s].noise;
+        if (gain <= noise || gain <= advice.gain) continue;
+        std::string command = knobs.command(stage);
+        if (command.empty()) continue;
+        advice = {errorStageName(stage), gain, std::move(command), ""};
+    }
+    if (advice.command.empty()) {
+        advice.text = "no knob gains more than the noise of this measurement";
+        return advice;
+    }
+    advice.text = fmt::format("turn first: {} ({:.4f} would become {:.4f} if it were exact): {}",
+                              advice.stage, result.mean.total.relativeRmse,
+                              result.mean.total.relativeRmse - advice.gain, advice.command);
+    return advice;
+}
+
+}  // namespace prt::tools
