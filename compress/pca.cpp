@@ -116,16 +116,6 @@ Moments momentsOf(std::span<const float> rows, std::span<const size_t> indices,
                      "bake the mesh again; coefficients of visibility are below 4");
 }
 
-// Orthonormal vectors as rows; the largest entry of each made positive.
-void setBasis(PcaResult& pca, RowMatrixXf basis) {
-    for (Eigen::Index m = 0; m < basis.rows(); ++m) {
-        Eigen::Index largest = 0;
-        basis.row(m).cwiseAbs().maxCoeff(&largest);
-        if (basis(m, largest) < 0) basis.row(m) *= -1;
-    }
-    pca.basis.assign(basis.data(), basis.data() + basis.size());
-}
-
 void setVariance(PcaResult& pca, const std::vector<double>& values) {
     pca.variance.assign(values.begin(), values.end());
     double explained = 0;
@@ -224,9 +214,11 @@ PcaResult alignToCovariance(const PcaResult& pca, std::span<const double> covari
     const LeadingVectors axes =
         leadingVectors({within.data(), size_t(within.size())}, pca.components, pca.components);
     PcaResult result = pca;
-    setBasis(result,
-             (Eigen::Map<const RowMatrixXd>(axes.vectors.data(), pca.components, pca.components) * basis)
-                 .cast<float>());
+    RowMatrixXd turned =
+        Eigen::Map<const RowMatrixXd>(axes.vectors.data(), pca.components, pca.components) * basis;
+    for (Eigen::Index m = 0; m < turned.rows(); ++m)
+        turned.row(m) *= canonicalSign({turned.row(m).data(), size_t(dimension)});
+    std::copy_n(turned.data(), turned.size(), result.basis.begin());
     setVariance(result, axes.values);
     return result;
 }

@@ -172,6 +172,33 @@ TEST(LeadingVectors, FindsEveryCopyOfEqualEigenvalues) {
     }
 }
 
+TEST(LeadingVectors, ProductsAloneGiveTheSame) {
+    // The covariance of rows, never formed: to the mean's distances and back.
+    const int dimension = 36;
+    const RowMatrixXd rows = inDouble(randomRows(3000, dimension, 17), dimension);
+    const RowMatrixXd centred = rows.rowwise() - rows.colwise().mean();
+    const Eigen::MatrixXd covariance = centred.transpose() * centred / double(rows.rows());
+    size_t products = 0;
+    const auto product = [&](std::span<const double> x, std::span<double> y) {
+        ++products;
+        const Eigen::Map<const Eigen::VectorXd> in(x.data(), dimension);
+        Eigen::Map<Eigen::VectorXd>(y.data(), dimension) =
+            centred.transpose() * (centred * in) / double(rows.rows());
+    };
+    for (const int count : {1, 5, 17, 36}) {
+        products = 0;
+        const LeadingVectors implicit = leadingVectors(product, covariance.trace(), dimension, count);
+        const LeadingVectors dense =
+            leadingVectors({covariance.data(), size_t(covariance.size())}, dimension, count);
+        for (size_t m = 0; m < size_t(count); ++m)
+            EXPECT_NEAR(implicit.values[m], dense.values[m], 1e-9 * covariance.trace());
+        // Deviations of neighbouring axes differ by a fifth.
+        for (size_t k = 0; k < implicit.vectors.size(); ++k)
+            EXPECT_NEAR(implicit.vectors[k], dense.vectors[k], 1e-6);
+        EXPECT_LE(products, size_t(2 * std::max(dimension, 4 * count + 20)));
+    }
+}
+
 TEST(Pca, AllComponentsReconstructExactly) {
     for (const int dimension : {1, 4, 9, 36, 100}) {
         const std::vector<float> rows = randomRows(1500, dimension, unsigned(dimension));
