@@ -11,18 +11,20 @@
 
 namespace prt::tools {
 
+/// Largest CompressionStudy::lightOrders: what tables of one band of visibility see.
+inline constexpr int kMostLightBands = 12;
+
 struct CompressionStudy {
-    std::vector<int> orders{3, 4, 6};  ///< numbers of bands, 1..kMaxBundleShOrder
-    std::vector<int> components{4, 8, 12, 16,
-                                24};  ///< those below n² of an order; n² itself always comes last
-    std::vector<int> lightOrders{3, 4, 5, 6, 7, 8, 9, 10, 11, 12};  ///< bands of the light, 1..17
+    /// Numbers of bands, 1..kMaxBundleShOrder
+    std::vector<int> orders{3, 4, 6};
+    /// Numbers of vectors, rising; those below n² of an order are measured, then n² itself
+    std::vector<int> components{4, 8, 12, 16, 24};
+    /// Bands of the light, 1..kMostLightBands
+    std::vector<int> lightOrders{3, 4, 5, 6, 7, 8, 9, 10, 11, 12};
     std::string encoding = "unorm8";  ///< of weights as shipped; coefficients are half
     int points = 400;                 ///< where irradiance is judged, over the mesh by area
     uint64_t seed = 1;
 };
-
-/// Largest CompressionStudy::lightOrders: what tables of one band of visibility see.
-inline constexpr int kMostLightBands = 12;
 
 /// One way to store visibility. Errors are relative RMSE of irradiance at the geometric normal and four
 /// normals tilted by 20 degrees, means over the environments.
