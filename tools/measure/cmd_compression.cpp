@@ -30,7 +30,7 @@ struct Arguments {
     CompressionView view;
     RelightArguments camera;  // of these only the camera is used
 
-    Arguments() { camera.distance = 0.6; }
+    Arguments() { camera.distance = 0.7; }
     void addTo(CommandLine& line) {
         line.positional("BUNDLE", bundle, "bundle made by prt precompute");
         line.textList("--env", sources, "ENV",
