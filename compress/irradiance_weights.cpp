@@ -110,7 +110,7 @@ IrradianceErrorSums IrradianceFit::State::visit(const Points& all, std::span<Wei
     parallelFor(count, kBlockPoints, [&](size_t begin, size_t end) {
         throwIfInterrupted();
         IrradianceErrorSums& sums = partial[begin / kBlockPoints];
-        Eigen::MatrixXf metric(dimension, dimension), projection, fit, gram;
+        Eigen::MatrixXf metric(dimension, dimension), projection, gram;
         Eigen::VectorXf error(dimension), product(dimension), fitted(pca.components);
         Eigen::LLT<Eigen::MatrixXf> cholesky(pca.components);
         forEachNormal(points, all.normals, begin, end, [&](size_t first, size_t last) {
@@ -119,7 +119,6 @@ IrradianceErrorSums IrradianceFit::State::visit(const Points& all, std::span<Wei
                 projection.noalias() = basis * metric;
                 gram.noalias() = projection * vectors;
                 cholesky.compute(gram);
-                fit = cholesky.solve(projection);
             }
             // One by one: the bits of a weight then depend on its own point alone.
             for (size_t k = first; k < last; ++k) {
@@ -127,7 +126,8 @@ IrradianceErrorSums IrradianceFit::State::visit(const Points& all, std::span<Wei
                 const Eigen::Map<const Eigen::VectorXf> row(all.rows.data() + point * d, dimension);
                 error = row - mean;
                 if constexpr (Fits) {
-                    fitted.noalias() = fit * error;
+                    fitted.noalias() = projection * error;
+                    cholesky.solveInPlace(fitted);
                     std::copy_n(fitted.data(), components, weights.data() + point * components);
                 } else {
                     fitted = Eigen::Map<const Eigen::VectorXf>(weights.data() + point * components,

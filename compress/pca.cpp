@@ -10,11 +10,13 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 #include "compress/leading_vectors.h"
 #include "precompute/base/check.h"
 #include "precompute/base/error.h"
 #include "precompute/base/parallel.h"
+#include "precompute/math/sh_lanes.h"
 
 namespace prt {
 namespace {
@@ -236,16 +238,57 @@ std::vector<float> projectPca(const PcaResult& pca, std::span<const float> rows,
     return weights;
 }
 
+namespace {
+
+using detail::kLanes;
+using detail::Lanes;
+
+constexpr size_t kRowsAtOnce = 4;  // as many sums as registers hold beside a row of the basis
+
+// Weights of up to four rows for sixteen vectors. Rows without a pair are done as four too, so that the bits
+// of a weight do not depend on its neighbours.
+// @param columns  [d×16] the vectors, side by side
+PRT_TARGET_CLONES void projectRows(const float* rows, size_t count, size_t dimension, const float* mean,
+                                   const float* columns, float* weights, size_t components, size_t vectors) {
+    for (size_t first = 0; first < count; first += kRowsAtOnce) {
+        const float* row[kRowsAtOnce];
+        for (size_t r = 0; r < kRowsAtOnce; ++r) row[r] = rows + std::min(first + r, count - 1) * dimension;
+        Lanes a{}, b{}, c{}, d{};
+        for (size_t k = 0; k < dimension; ++k) {
+            const Lanes column = detail::lanesAt(columns + k * kLanes).value;
+            a += (row[0][k] - mean[k]) * column;
+            b += (row[1][k] - mean[k]) * column;
+            c += (row[2][k] - mean[k]) * column;
+            d += (row[3][k] - mean[k]) * column;
+        }
+        const Lanes sums[kRowsAtOnce] = {a, b, c, d};
+        for (size_t r = 0; r < kRowsAtOnce && first + r < count; ++r) {
+            float* out = weights + (first + r) * components;
+            if (vectors == kLanes)
+                detail::lanesAt(out) = sums[r];
+            else
+                std::memcpy(out, &sums[r], vectors * sizeof(float));
+        }
+    }
+}
+
+}  // namespace
+
 void projectPca(const PcaResult& pca, std::span<const float> rows, int dimension, std::span<float> weights) {
-    const size_t count = rowCount(rows, {}, dimension);
-    PRT_CHECK_EQ(weights.size(), count * size_t(pca.components));
-    const Eigen::Map<const RowMatrixXf> basis(pca.basis.data(), pca.components, dimension);
-    const Eigen::Map<const Eigen::RowVectorXf> mean(pca.mean.data(), dimension);
+    const size_t count = rowCount(rows, {}, dimension), d = size_t(dimension);
+    const size_t components = size_t(pca.components);
+    PRT_CHECK_EQ(weights.size(), count * components);
+    // Sixteen vectors after sixteen, zeros behind the last.
+    const size_t groups = (components + kLanes - 1) / kLanes;
+    std::vector<float> columns(groups * d * kLanes);
+    for (size_t m = 0; m < components; ++m)
+        for (size_t k = 0; k < d; ++k)
+            columns[(m / kLanes * d + k) * kLanes + m % kLanes] = pca.basis[m * d + k];
     parallelFor(count, kBlockRows, [&](size_t begin, size_t end) {
-        const auto size = Eigen::Index(end - begin);
-        const Eigen::Map<const RowMatrixXf> block(rows.data() + begin * size_t(dimension), size, dimension);
-        Eigen::Map<RowMatrixXf> out(weights.data() + begin * size_t(pca.components), size, pca.components);
-        out.noalias() = (block.rowwise() - mean) * basis.transpose();
+        for (size_t group = 0; group < groups; ++group)
+            projectRows(&rows[begin * d], end - begin, d, pca.mean.data(), &columns[group * d * kLanes],
+                        &weights[begin * components + group * kLanes], components,
+                        std::min(kLanes, components - group * kLanes));
     });
 }
 
