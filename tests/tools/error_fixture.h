@@ -71,7 +71,7 @@ inline ErrorStudy smallErrorStudy() {
     study.points = 24;
     study.rays = 4096;
     study.weights = "float";
-    study.tables.format = "float";
+    study.tables = "float";
     return study;
 }
 

@@ -115,10 +115,10 @@ TEST(MeasureError, FinerStorageAndTablesErrLess) {
     ErrorStudy study = smallErrorStudy();
     const BundleKind kind{.components = 6};
     study.weights = "unorm8";
-    study.tables.size = 4;
+    study.table.size = 4;
     const ErrorBlock coarse = errorsOf(kind, {"sky:clear"}, study).environments[0];
     study.weights = "unorm16";
-    study.tables.size = 16;
+    study.table.size = 16;
     const ErrorBlock fine = errorsOf(kind, {"sky:clear"}, study).environments[0];
     // Steps of 1/255 and 1/65535.
     EXPECT_NEAR(coarse.weights.relativeRmse / fine.weights.relativeRmse, 257, 100);
@@ -128,8 +128,8 @@ TEST(MeasureError, FinerStorageAndTablesErrLess) {
     EXPECT_GT(coarse.lookup.relativeRmse, 8 * fine.lookup.relativeRmse);
     EXPECT_LT(coarse.lookup.relativeRmse, 32 * fine.lookup.relativeRmse);
 
-    study.tables.cosineBands = kPaperCosineBands;
-    study.tables.format = "half";
+    study.table.variant = "paper";
+    study.tables = "half";
     const ErrorBlock paper = errorsOf(kind, {"sky:clear"}, study).environments[0];
     EXPECT_GT(paper.bands.relativeRmse, 2 * fine.bands.relativeRmse);
     EXPECT_GT(paper.tableFormat.relativeRmse, 10 * fine.tableFormat.relativeRmse);
@@ -257,7 +257,15 @@ TEST(ErrorAdvice, TurnsTheKnobThatGainsMost) {
     EXPECT_EQ(advice(ErrorStage::Projection), "");  // weighted already
     EXPECT_EQ(advice(ErrorStage::Pca), "prt compress b.prt --components 18");
     EXPECT_EQ(advice(ErrorStage::Quantisation), "prt export b.prt -o FOLDER --weights unorm16 --tables half");
-    EXPECT_EQ(advice(ErrorStage::Tables), "prt tabulate b.prt sky:clear --kind triple-product --size 64");
+    EXPECT_EQ(advice(ErrorStage::Tables),
+              "prt tabulate b.prt sky:clear --kind triple-product --layout cube --size 64");
+    // The bands that are missing, where they lose more than the lookup.
+    study.table.variant = "paper";
+    result.mean.bands.relativeRmse = 0.01;
+    EXPECT_EQ(advice(ErrorStage::Tables),
+              "prt tabulate b.prt sky:clear --kind triple-product --layout cube --size 32");
+    study.table.variant = "exact";
+    EXPECT_EQ(advice(ErrorStage::Tables), "");
     bundle.visibility.shOrder = 10;
     EXPECT_EQ(advice(ErrorStage::Truncation), "");
     bundle.visibility.attributes = {{"rays", "256"}};

@@ -135,9 +135,12 @@ TEST(MeasureErrorCommand, RefusesWhatItCannotMeasure) {
     EXPECT_THROW(run({"a.prt", "--points", "-1"}), UsageError);
     EXPECT_THROW(run({"a.prt", "--tilt", "61"}), UsageError);
     EXPECT_THROW(run({"a.prt", "--variant", "both"}), UsageError);
+    EXPECT_THROW(run({"a.prt", "--window", "hamming"}), UsageError);
     const std::string bundle = makeBundle(folder, {.components = 2});
     EXPECT_THROW(runOn(folder, bundle, {"--env", "sky:green"}), InputError);
     EXPECT_THROW(runOn(folder, bundle, {"--layout", "octahedral", "--tables", "rgb9e5"}), UsageError);
+    EXPECT_THROW(runOn(folder, bundle, {"--extract-sun"}), UsageError);
+    EXPECT_THROW(runOn(folder, bundle, {"--size", "512"}), UsageError);
     EXPECT_THROW(run({bundle, "-o", folder.file("no/such/folder/x")}), OutputError);
 }
 

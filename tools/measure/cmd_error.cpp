@@ -16,7 +16,7 @@
 #include "tools/measure/error_advice.h"
 #include "tools/measure/error_images.h"
 #include "tools/measure/output.h"
-#include "tools/measure/tables.h"
+#include "tools/table_arguments.h"
 
 namespace prt::tools {
 namespace {
@@ -151,10 +151,12 @@ Report settingsReport(const JudgedBundle& bundle, const ErrorResult& result, con
         .set("directions", uint64_t(result.directions))
         .set("tilt_deg", study.tiltDeg)
         .set("weights", study.weights)
-        .set("tables", study.tables.format)
-        .set("layout", study.tables.layout)
-        .set("size", study.tables.size)
-        .set("cosine_bands", study.tables.cosineBands)
+        .set("tables", study.tables)
+        .set("layout", study.table.layout)
+        .set("size", study.table.size)
+        .set("variant", study.table.variant)
+        .set("cosine_bands", study.table.cosineBands())
+        .set("window", study.table.window)
         .set("truth_noise", mean.truthNoise)
         .set("relative_rmse", mean.total.relativeRmse)
         .set("psnr_db", finite(mean.total.psnrDb))
@@ -166,7 +168,7 @@ Report settingsReport(const JudgedBundle& bundle, const ErrorResult& result, con
 }  // namespace
 
 void runMeasureError(int argc, char** argv) {
-    std::string path, images, variant = "exact";
+    std::string path, images;
     std::vector<std::string> sources;
     ErrorStudy study;
     int points = int(study.points);
@@ -191,20 +193,14 @@ void runMeasureError(int argc, char** argv) {
     line.choice(
         "--weights", study.weights, {"float", "half", "unorm16", "unorm8"},
         "format of the weights; coefficients of a bundle that is not compressed are halves, or floats");
-    line.choice("--tables", study.tables.format, {"float", "half", "rgb9e5", "r11f"},
+    line.choice("--tables", study.tables, {"float", "half", "rgb9e5", "r11f"},
                 "format of the tables; the last two of cubes alone");
-    line.choice("--layout", study.tables.layout, TableLayout::names(), "layout of the tables");
-    line.integer("--size", study.tables.size, 1, 256, "texels along a face of the tables");
-    line.choice("--variant", variant, tableVariants(), "bands of the cosine in the tables");
+    addTableOptions(line, "--", study.table);
     line.text("--images", images, "DIR", "writes heat maps over the atlas: PNG, and EXR with the values");
     addMeasureOptions(line, options);
     if (!line.parse(argc, argv)) return;
     study.points = size_t(points);
-    study.tables.cosineBands = tableVariantBands(variant);
-    if (study.tables.size < TableLayout::minSize(study.tables.layout))
-        throw UsageError("--size",
-                         fmt::format("{} is too small for {}", study.tables.size, study.tables.layout),
-                         fmt::format("use {} or more", TableLayout::minSize(study.tables.layout)));
+    checkTableOptions(study.table);
     checkMeasureOutput(options);
 
     const Stopwatch watch;

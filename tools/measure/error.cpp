@@ -4,28 +4,21 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <numeric>
 
-#include "compress/irradiance_weights.h"
-#include "compress/pca.h"
-#include "compress/quantize.h"
 #include "precompute/base/check.h"
 #include "precompute/base/error.h"
 #include "precompute/base/log.h"
 #include "precompute/base/parallel.h"
 #include "precompute/math/directions.h"
-#include "precompute/math/irradiance_projection.h"
 #include "precompute/math/sh.h"
+#include "tools/measure/error_storage.h"
 
 namespace prt::tools {
 namespace {
-
-using RowMatrixXf = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 constexpr size_t kNormals = 5, kBlockPoints = 64, kHalves = 2;
 // Rings of cells of the second half for those of the first.
@@ -45,97 +38,6 @@ enum Variant : size_t {
     kVariants
 };
 constexpr size_t at(Variant first, ErrorStage stage) { return size_t(first) + size_t(stage); }
-
-// How the bundle compresses and stores; a bundle that is not compressed has its coefficients for weights.
-class Storage {
-  public:
-    Storage(const JudgedBundle& bundle, const ErrorStudy& study)
-        : bundle_(bundle), shOrder_(bundle.visibility.shOrder), dimension_(shCount(shOrder_)) {
-        pca_.components = bundle.pca ? bundle.pca->components : dimension_;
-        format_ = bundle.pca || study.weights == "float" ? study.weights : "half";
-        if (bundle.pca) {
-            pca_.mean = bundle.pca->mean;
-            pca_.basis = bundle.pca->basis;
-        } else {
-            pca_.mean.assign(size_t(dimension_), 0.0f);
-            pca_.basis.assign(size_t(dimension_) * size_t(dimension_), 0.0f);
-            for (size_t i = 0; i < size_t(dimension_); ++i) pca_.basis[i * size_t(dimension_) + i] = 1;
-        }
-        if (!format_.starts_with("unorm")) return;
-        bits_ = format_ == "unorm8" ? 8 : 16;
-        std::vector<uint8_t> used;
-        for (const Validity validity : bundle.visibility.validity)
-            used.push_back(validity == Validity::Valid);
-        ranges_ = fitUnormRanges(bundle.pca->weights, size_t(pca_.components), bits_, used);
-    }
-
-    const PcaResult& pca() const { return pca_; }
-    size_t components() const { return size_t(pca_.components); }
-
-    /// Weights of the bundle.
-    std::vector<float> shipped(std::span<const uint32_t> places) const {
-        const std::vector<float>& all = bundle_.pca ? bundle_.pca->weights : bundle_.visibility.coefficients;
-        std::vector<float> result;
-        for (const uint32_t place : places) {
-            const float* row = &all[place * components()];
-            result.insert(result.end(), row, row + components());
-        }
-        return result;
-    }
-    /// Weights as prt compress would find them with the bundle's vectors.
-    std::vector<float> fit(const std::vector<float>& rows, std::span<const Vec3f> normals) const {
-        if (!bundle_.pca) return rows;
-        const Projection& projection = bundle_.visibility.projection;
-        const bool isWeighted = projection.kind == ProjectionKind::Irradiance;
-        if (bundle_.compressedWith != "plain")
-            return projectPcaForIrradiance(pca_, rows, normals, shOrder_,
-                                           isWeighted ? projection.weight : IrradianceWeight{});
-        if (!isWeighted) return projectPca(pca_, rows, dimension_);
-        const IrradianceProjection cutter(shOrder_, projection.weight);
-        std::vector<float> cut(rows.size());
-        const size_t n2 = size_t(dimension_);
-        for (size_t p = 0; p < normals.size(); ++p)
-            cutter.cutAtHorizon(normals[p], std::span(rows).subspan(p * n2, n2),
-                                std::span(cut).subspan(p * n2, n2));
-        return projectPca(pca_, cut, dimension_);
-    }
-    /// What a reader of stored weights gets.
-    std::vector<float> store(std::vector<float> weights) const {
-        if (bits_ != 0) return dequantizeUnorm(quantizeUnorm(weights, ranges_, bits_), ranges_, bits_);
-        if (format_ == "half")
-            for (float& value : weights)
-                value = floatFromHalf(halfFromFloat(std::clamp(value, -kMaxHalf, kMaxHalf)));
-        return weights;
-    }
-    /// Mean + Σ_m w_m basis_m of all rows.
-    std::vector<float> expand(const std::vector<float>& weights) const {
-        if (!bundle_.pca) return weights;
-        const auto count = Eigen::Index(weights.size() / components());
-        const Eigen::Map<const RowMatrixXf> w(weights.data(), count, pca_.components),
-            basis(pca_.basis.data(), pca_.components, dimension_);
-        RowMatrixXf rows = w * basis;
-        rows.rowwise() += Eigen::Map<const Eigen::RowVectorXf>(pca_.mean.data(), dimension_);
-        return {rows.data(), rows.data() + rows.size()};
-    }
-
-  private:
-    const JudgedBundle& bundle_;
-    int shOrder_, dimension_, bits_ = 0;
-    std::string format_;
-    PcaResult pca_;
-    std::vector<UnormRange> ranges_;
-};
-
-// Weights of all points at three steps: as fitted, as stored, and the expansions of both.
-struct Compressed {
-    std::vector<float> stored;                            // [points×M]
-    std::vector<float> fittedExpansion, storedExpansion;  // [points×n²]
-
-    Compressed(const Storage& storage, const std::vector<float>& weights)
-        : stored(storage.store(weights)),
-          fittedExpansion(storage.expand(weights)),
-          storedExpansion(storage.expand(stored)) {}
-};
 
 std::vector<float> exchanged(const std::vector<float>& shipped, const std::vector<float>& own,
                              const std::vector<float>& other) {
@@ -204,9 +106,9 @@ class ErrorStudyRun {
           count_(points.place.size()),
           coefficients_(size_t(shCount(bundle.visibility.shOrder))),
           channels_(3 * environments.size()),
-          storage_(bundle, study),
+          storage_(bundle, study.weights),
           tables_(environments, bundle.visibility.shOrder, storage_.pca().mean, storage_.pca().basis,
-                  study.tables),
+                  study.table, study.tables),
           shipped_(shippedRows(bundle)),
           shippedCompressed_(storage_, storage_.shipped(points.place)) {
         for (size_t h = 0; h < kHalves; ++h) {
@@ -442,10 +344,10 @@ class ErrorStudyRun {
     const JudgedPoints& points_;
     const ErrorStudy& study_;
     size_t count_, coefficients_, channels_;
-    Storage storage_;
-    TableLight tables_;
+    BundleStorage storage_;
+    TabulatedLight tables_;
     std::vector<float> shipped_;  // [points×n²]
-    Compressed shippedCompressed_;
+    StoredExpansion shippedCompressed_;
     std::vector<RayLight> light_;   // [halves]
     std::vector<DenseHalf> dense_;  // [halves]
     std::vector<ErrorMap> maps_;

@@ -30,8 +30,9 @@ struct ErrorStudy {
     double tiltDeg = 20;            ///< of four shading normals about the geometric one, 0..60
     std::string weights = "unorm8"; /**< "float", "half", "unorm16", "unorm8"; coefficients of a bundle that
                                          is not compressed: float for "float", else half */
-    TableChoice tables;
-    bool maps = false;  ///< keep errors of every point
+    TableOptions table;             ///< without extraction of suns
+    std::string tables = "half";    ///< "float", "half"; of cubes also "rgb9e5", "r11f"
+    bool maps = false;              ///< keep errors of every point
 };
 
 /// √(Σ|e|² / Σ|E*|²) over points, normals and colours, e the mean of both halves. Both sums are of products
@@ -88,7 +89,6 @@ struct ErrorResult {
 /// Definitions of all stages, with formulas: tools/docs/error_report.md.
 /// @param caster  of the bundle's mesh
 /// @throws UsageError   a value out of range
-/// @throws InputError   sizes of tables
 /// @throws Interrupted
 ErrorResult studyError(const JudgedBundle& bundle, const RayCaster& caster, const JudgedPoints& points,
                        std::span<const Environment> environments, const ErrorStudy& study);

@@ -12,7 +12,6 @@
 namespace prt::tools {
 namespace {
 
-constexpr int kLargestTable = 256;
 constexpr double kSmallestError = 1e-4;  // of prt precompute --error
 constexpr int kMoreBands = 2;
 
@@ -76,21 +75,26 @@ class Knobs {
         if (isOfWeights && study_.weights != "float")
             return fmt::format("prt export {} -o FOLDER --weights {} --tables {}", path_,
                                study_.weights == "unorm8" && result_.isCompressed ? "unorm16" : "float",
-                               study_.tables.format);
-        if (study_.tables.format == "float") return "";
+                               study_.tables);
+        if (study_.tables == "float") return "";
         return fmt::format("prt export {} -o FOLDER --weights {} --tables {}", path_, study_.weights,
-                           study_.tables.format == "half" ? "float" : "half");
+                           study_.tables == "half" ? "float" : "half");
     }
     std::string finerTables() const {
-        const bool isOfBands = result_.mean.bands.relativeRmse > result_.mean.lookup.relativeRmse;
-        if (!isOfBands && 2 * study_.tables.size > kLargestTable) return "";
-        if (isOfBands && study_.tables.cosineBands >= kTableCosineBands) return "";
+        TableOptions finer = study_.table;
+        if (result_.mean.bands.relativeRmse > result_.mean.lookup.relativeRmse) {
+            if (finer.variant == "exact" && finer.window == "none") return "";
+            finer.variant = "exact";
+            finer.window = "none";
+        } else {
+            finer.size *= 2;
+            if (finer.size > kLargestJudgedTable) return "";
+        }
         std::string environments;
         for (const std::string& source : sources_) environments.append(1, ' ').append(shellWord(source));
         if (sources_.empty()) environments = " sky:clear sky:overcast sky:sunset";
-        return fmt::format("prt tabulate {}{} --kind {} --size {}", path_, environments,
-                           result_.isCompressed ? "triple-product" : "light-cosine",
-                           isOfBands ? study_.tables.size : 2 * study_.tables.size);
+        return fmt::format("prt tabulate {}{} --kind {}{}", path_, environments,
+                           result_.isCompressed ? "triple-product" : "light-cosine", tableWords(finer));
     }
 
     std::string path_;

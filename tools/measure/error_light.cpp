@@ -2,10 +2,14 @@
 // [IwanickiSloan2012, Sec. 3.2].
 #include "tools/measure/error_light.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
 #include "compress/export_textures.h"
+#include "compress/quantize.h"
+#include "compress/tables/fast_tables.h"
 #include "precompute/base/check.h"
 #include "precompute/base/error.h"
 #include "precompute/base/parallel.h"
@@ -57,20 +61,33 @@ void scatter(std::span<const float> planes, size_t layers, size_t texels, size_t
                     planes[(c * layers + m) * texels + t];
 }
 
-std::vector<float> storedValues(std::vector<float> values, int shOrder, const TableChoice& choice,
-                                size_t vectors) {
-    if (choice.format == "float") return values;
-    if (choice.layout == "cube") {
+std::vector<float> storedValues(std::vector<float> values, int shOrder, const TableOptions& options,
+                                const std::string& format, size_t vectors) {
+    if (format == "float") return values;
+    if (options.layout == "cube") {
         NormalTable table;
         table.kind = TableKind::TripleProduct;
-        table.size = choice.size;
+        table.size = options.size;
         table.shOrder = shOrder;
         table.layers = int(vectors + 1);
         table.values = std::move(values);
-        return encodeTable(table, choice.format).decoded;
+        return encodeTable(table, format).decoded;
     }
     for (float& value : values) value = floatFromHalf(halfFromFloat(std::clamp(value, -kMaxHalf, kMaxHalf)));
     return values;
+}
+
+const TableOptions& checked(const TableOptions& options, const std::string& format) {
+    checkTableOptions(options);
+    if (options.extractSun)
+        throw UsageError("--extract-sun", "a sun's own shadow is no stage of this report",
+                         "leave it out; prt relight --compare-reference shows what it gains");
+    if (options.size > kLargestJudgedTable)
+        throw UsageError("--size", fmt::format("{} is too large to be judged", options.size),
+                         fmt::format("use at most {}", kLargestJudgedTable));
+    if (options.layout != "cube" && format != "float" && format != "half")
+        throw UsageError("--tables", format + " is for cubes alone", "use half or float");
+    return options;
 }
 
 void lookUp(const SphereTaps& taps, const std::vector<float>& table, size_t values, std::span<float> out) {
@@ -126,44 +143,43 @@ void RayLight::transfer(const Vec3f& normal, std::span<float> out) const {
     std::transform(sum.begin(), sum.end(), out.begin(), [](double value) { return float(value); });
 }
 
-TableLight::TableLight(std::span<const Environment> environments, int shOrder, std::span<const float> mean,
-                       std::span<const float> basis, const TableChoice& choice)
-    : layout_(choice.layout, choice.size),
-      choice_(choice),
+TabulatedLight::TabulatedLight(std::span<const Environment> environments, int shOrder,
+                               std::span<const float> mean, std::span<const float> basis,
+                               const TableOptions& options, const std::string& format)
+    : layout_(checked(options, format).layout, options.size),
+      cosineBands_(options.cosineBands()),
       shOrder_(shOrder),
       coefficients_(size_t(shCount(shOrder))),
       vectors_(basis.size() / coefficients_),
       texels_(size_t(layout_.texelCount())) {
     PRT_CHECK_EQ(mean.size(), coefficients_);
-    if (choice.layout != "cube" && choice.format != "float" && choice.format != "half")
-        throw UsageError("--tables", choice.format + " is for cubes alone", "use half or float");
-    LightTableBuilder builder(layout_, shOrder, choice.cosineBands);
+    LightTableBuilder builder(layout_, shOrder, cosineBands_);
     const size_t channels = 3 * environments.size();
     for (size_t e = 0; e < environments.size(); ++e) {
-        environments_.push_back(projectEnvironment(environments[e].view(), builder.environmentShOrder()));
+        environments_.push_back(projectTableLight(environments[e].view(), shOrder, options).rest);
         std::vector<float> planes(3 * coefficients_ * texels_);
         builder.buildLightCosine(environments_.back(), planes);
         scatter(planes, coefficients_, texels_, e, channels, exact_);
         planes.resize(3 * (vectors_ + 1) * texels_);
         builder.buildTripleProduct(environments_.back(), mean, basis, planes);
-        scatter(storedValues(std::move(planes), shOrder, choice, vectors_), vectors_ + 1, texels_, e,
+        scatter(storedValues(std::move(planes), shOrder, options, format, vectors_), vectors_ + 1, texels_, e,
                 channels, stored_);
     }
 }
 
-void TableLight::transfer(const Vec3f& normal, std::span<float> out) const {
+void TabulatedLight::transfer(const Vec3f& normal, std::span<float> out) const {
     lookUp(layout_.taps(normal.cast<double>()), exact_, 3 * environments_.size() * coefficients_, out);
 }
 
-void TableLight::stored(const Vec3f& normal, std::span<float> out) const {
+void TabulatedLight::stored(const Vec3f& normal, std::span<float> out) const {
     lookUp(layout_.taps(normal.cast<double>()), stored_, 3 * environments_.size() * (vectors_ + 1), out);
 }
 
-std::vector<float> TableLight::transferWithoutTable(std::span<const Vec3f> normals) const {
+std::vector<float> TabulatedLight::transferWithoutTable(std::span<const Vec3f> normals) const {
     const size_t channels = 3 * environments_.size();
     std::vector<float> result(normals.size() * channels * coefficients_);
     for (size_t e = 0; e < environments_.size(); ++e)
-        scatter(evalLightCosine(environments_[e], shOrder_, normals, choice_.cosineBands), coefficients_,
+        scatter(evalLightCosine(environments_[e], shOrder_, normals, cosineBands_), coefficients_,
                 normals.size(), e, channels, result);
     return result;
 }

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "compress/tables/fast_tables.h"
+#include "compress/tables/table_options.h"
 #include "precompute/io/environment_file.h"
 #include "precompute/math/table_layout.h"
 
@@ -39,22 +39,18 @@ class RayLight {
     std::vector<float> light_;  // [K×channels] L ΔΩ
 };
 
-/// How tables over the normal are made and kept.
-struct TableChoice {
-    std::string layout = "cube";  ///< of TableLayout::names()
-    int size = 32;                ///< texels along a face
-    int cosineBands = kTableCosineBands;
-    std::string format = "half";  ///< "float", "half"; of cubes also "rgb9e5", "r11f"
-};
+/// Largest tables that are judged: those of all coefficients are held in memory.
+inline constexpr int kLargestJudgedTable = 256;
 
 /// Tables of all environments for one set of vectors.
-class TableLight {
+class TabulatedLight {
   public:
     /// @param mean [n²]   @param basis [M×n²]
-    /// @throws UsageError  a format that the layout does not have
-    /// @throws InputError  a size that the layout does not have
-    TableLight(std::span<const Environment> environments, int shOrder, std::span<const float> mean,
-               std::span<const float> basis, const TableChoice& choice);
+    /// @param options  without extraction of suns   @param format  "float", "half"; of cubes also "rgb9e5",
+    /// "r11f"
+    /// @throws UsageError  a format that the layout does not have, a size out of range, extraction of suns
+    TabulatedLight(std::span<const Environment> environments, int shOrder, std::span<const float> mean,
+                   std::span<const float> basis, const TableOptions& options, const std::string& format);
 
     /// R of a normal as the tables give it: bilinear lookup in float tables of the coefficients.
     /// @param out  [channels×n²]
@@ -68,7 +64,7 @@ class TableLight {
 
   private:
     TableLayout layout_;
-    TableChoice choice_;
+    int cosineBands_;
     int shOrder_;
     size_t coefficients_, vectors_, texels_;
     std::vector<EnvironmentSh> environments_;
