@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <filesystem>
 #include <map>
@@ -234,10 +233,7 @@ std::vector<TabulateRow> runTabulate(const TabulateSettings& settings) {
         }
         const NormalTable table = maker.make(environment, row);
         const std::filesystem::path staged =
-            transaction.stage(row.file, target.madeFrom,
-                              fmt::format("prt tabulate {} {} --kind {}{}{}", settings.bundlePath,
-                                          shellWord(source), settings.kind, tableWords(settings.table),
-                                          environmentWords(settings.environmentOptions)));
+            transaction.stage(row.file, target.madeFrom, tabulateCommand(settings, source));
         writeTableFile(staged.string(), table);
         row.bytes = size_t(std::filesystem::file_size(staged));
         row.seconds = watch.seconds();
@@ -251,12 +247,15 @@ std::vector<TabulateRow> runTabulate(const TabulateSettings& settings) {
     return rows;
 }
 
+std::string tabulateCommand(const TabulateSettings& settings, const std::string& source) {
+    return fmt::format("prt tabulate {} {} --kind {}{}{}", shellWord(settings.bundlePath), shellWord(source),
+                       settings.kind, tableWords(settings.table),
+                       environmentWords(settings.environmentOptions));
+}
+
 std::string tableFileName(const std::string& environmentName, const std::string& kind,
                           const std::string& layout) {
-    std::string name = environmentName;
-    for (char& c : name)
-        if (!std::isalnum(static_cast<unsigned char>(c)) && c != '_' && c != '-') c = '_';
-    return fmt::format("tables/{}.{}.{}.exr", name, kind, layout);
+    return fmt::format("tables/{}.{}.{}.exr", environmentFileStem(environmentName), kind, layout);
 }
 
 }  // namespace prt

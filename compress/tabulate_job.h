@@ -32,6 +32,10 @@ struct TabulateRow {
 /// Writes a table for each environment; leaves those that are current and were made with the same settings.
 std::vector<TabulateRow> runTabulate(const TabulateSettings& settings);
 
+/// The command that makes one environment's table again.
+/// @param source  the environment as it was named
+std::string tabulateCommand(const TabulateSettings& settings, const std::string& source);
+
 /// File name of a table within its bundle: tables/ENV.KIND.LAYOUT.exr (characters outside [A-Za-z0-9_-]
 /// become '_').
 std::string tableFileName(const std::string& environmentName, const std::string& kind,

@@ -106,6 +106,8 @@ struct Renderer::State {
     Bounds bounds;
     Scene geometry;  // positions and indices, for surface()
     std::map<Technique, TechniqueData> techniques;
+    std::vector<SunLight> suns;  // without their shadows
+    CoefficientImage sunShadows;
     GlProgram backgroundProgram;
     GlObject background;
     float backgroundRotationRad = 0;
@@ -164,12 +166,20 @@ void Renderer::State::drawLight(const TechniqueData& data) {
     program.set("layers", data.table.layers);
     program.set("tableSize", data.table.size);
     program.set("gridSize", data.coefficients.grid.width, data.coefficients.grid.height);
+    program.set("sunCount", int(suns.size()));
+    for (size_t i = 0; i < suns.size(); ++i) {
+        program.set(fmt::format("sunDirection[{}]", i).c_str(), suns[i].direction);
+        program.set(fmt::format("sunIrradiance[{}]", i).c_str(), suns[i].irradiance);
+    }
     const GLuint images[] = {
         targets->place.name(),    targets->normal.name(),           targets->albedo.name(),
         targets->triangle.name(), data.coefficients.texture.name(), data.table.texture.name(),
-        scene.indices()};
+        scene.indices(),          sunShadows.texture.name()};
     GLuint unit = 0;
-    for (const GLuint image : images) gl.BindTextureUnit(unit++, image);
+    for (const GLuint image : images) {
+        if (image != 0) gl.BindTextureUnit(unit, image);
+        ++unit;
+    }
     gl.DrawArrays(GL_TRIANGLES, 0, 3);
 }
 
@@ -250,6 +260,25 @@ void Renderer::setTable(const NormalTable& table) {
     if (!data.programs.contains(table.layout))
         data.programs.emplace(table.layout, GlProgram(state_->gl, "screen.vert", "light.frag",
                                                       data.defines + layoutDefine(table.layout)));
+}
+
+void Renderer::setSuns(std::span<const SunLight> suns, const PointGrid& grid) {
+    State& s = *state_;
+    s.context.makeCurrent();
+    if (suns.size() > size_t(kMostSuns))
+        throw InputError(
+            "suns", fmt::format("{} are more than the {} that are drawn at a time", suns.size(), kMostSuns));
+    s.suns.clear();
+    s.sunShadows = {};
+    if (suns.empty()) return;
+    std::vector<float> shadows(grid.count * suns.size());
+    for (size_t i = 0; i < suns.size(); ++i) {
+        PRT_CHECK_EQ(suns[i].shadow.size(), grid.count);
+        for (size_t point = 0; point < grid.count; ++point)
+            shadows[point * suns.size() + i] = suns[i].shadow[point];
+        s.suns.push_back({suns[i].direction, suns[i].irradiance, {}});
+    }
+    s.sunShadows = uploadCoefficients(s.context, grid, int(suns.size()), shadows, "shadows of suns");
 }
 
 void Renderer::setBackground(const FloatImage& latLong, double rotationRad) {

@@ -4,6 +4,8 @@
 
 #include <memory>
 #include <optional>
+#include <span>
+#include <vector>
 
 #include "precompute/io/image.h"
 #include "precompute/io/scene.h"
@@ -29,6 +31,15 @@ struct RenderedFrame {
     FloatImage irradiance;  ///< 3 channels: E; 0 where nothing is seen
 };
 
+/// A light from one small disc of the sky, with its own shadow.
+struct SunLight {
+    Vec3f direction = Vec3f::UnitY();  ///< towards it, unit, world
+    Vec3f irradiance = Vec3f::Zero();  ///< of a surface that faces it, per colour
+    std::vector<float> shadow;         ///< [points of the grid] visible share of the disc, 0..1
+};
+/// Suns that a renderer draws at a time.
+inline constexpr int kMostSuns = 8;
+
 class Renderer {
   public:
     /// Uploads geometry and textures; visibility (for unc) and PCA weights (for pca) are optional, domain and
@@ -41,6 +52,11 @@ class Renderer {
     /// Uploads the table of a technique (already blended and rotated); replaces the previous one.
     /// @throws InputError  kind, order or layer count does not fit the visibility or PCA data
     void setTable(const NormalTable& table);
+    /// Lights besides the tables', for every technique; replaces the previous ones. Each adds its irradiance
+    /// × max(0, n·direction) × shadow.
+    /// @param grid  of the shadows: that of the visibility or PCA data
+    /// @throws InputError  more than kMostSuns
+    void setSuns(std::span<const SunLight> suns, const PointGrid& grid);
     /// Background: radiance per world direction, or black when never set.
     void setBackground(const FloatImage& latLong, double rotationRad);
 

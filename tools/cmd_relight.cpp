@@ -23,6 +23,7 @@
 #include "tools/commands.h"
 #include "tools/comparison.h"
 #include "tools/relight_arguments.h"
+#include "tools/relight_suns.h"
 #include "tools/report.h"
 
 namespace prt::tools {
@@ -185,6 +186,7 @@ class Relight {
           printText_(printText),
           data_(loadData(arguments)),
           tables_(arguments_, data_),
+          suns_(data_.bundle, data_.scene, data_.environments, tables_.rotationRad()),
           camera_(arguments.camera(sceneBounds(data_.scene))),
           options_{arguments.width, arguments.height, !arguments.noNormalMap},
           renderer_(context_, data_.scene, data_.visibility ? &*data_.visibility : nullptr,
@@ -271,6 +273,12 @@ class Relight {
         }
         if (arguments_.technique == "reference") image = referenceImage;
 
+        if (arguments_.tables.extractSun && arguments_.technique != "reference") {
+            const std::vector<SunLight> suns = suns_.make(weights);
+            renderer_.setSuns(suns, suns_.grid());
+            report.set("suns", uint64_t(suns.size()));
+        }
+
         std::vector<Report> rows;
         for (const Technique technique : {Technique::Unc, Technique::Pca}) {
             const bool asked = arguments_.technique == techniqueName(technique);
@@ -326,6 +334,7 @@ class Relight {
         if (arguments_.timeFrames == 0 || arguments_.technique == "reference") return;
         const Technique technique = arguments_.technique == "unc" ? Technique::Unc : Technique::Pca;
         renderer_.setTable(tables_.make(technique, data_.weights));
+        if (arguments_.tables.extractSun) renderer_.setSuns(suns_.make(data_.weights), suns_.grid());
         const double ms = renderer_.frameMilliseconds(camera_, technique, options_, arguments_.timeFrames);
         report.set("frame_ms", ms);
         if (printText_) fmt::print("{:<16} {:<10} {:.1f} ms a frame\n", "", arguments_.technique, ms);
@@ -335,6 +344,7 @@ class Relight {
     const bool printText_;
     RelightData data_;
     TableSource tables_;
+    RelightSuns suns_;
     Camera camera_;
     RenderOptions options_;
     GlContext context_;

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "compress/tabulate_job.h"
+#include "precompute/visibility/sun_shadow_job.h"
 #include "tools/command_line.h"
 #include "tools/commands.h"
 #include "tools/environment_arguments.h"
@@ -14,6 +15,24 @@
 namespace prt::tools {
 
 namespace {
+
+template <class Row>
+void printFile(const std::string& name, const Row& row) {
+    fmt::print("{}: {} ({})\n", name, row.file,
+               row.upToDate ? "current, nothing to do"
+                            : fmt::format("{:.1f} kB, {:.3f} s", double(row.bytes) * 1e-3, row.seconds));
+}
+
+std::vector<SunShadowRow> makeShadows(const TabulateSettings& settings,
+                                      const std::vector<TabulateRow>& rows) {
+    std::vector<BundleSun> suns;
+    for (size_t k = 0; k < rows.size(); ++k)
+        if (rows[k].sun.found)
+            suns.push_back({rows[k].environment, rows[k].environmentHash, rows[k].sun,
+                            tabulateCommand(settings, settings.environments[k])});
+    return suns.empty() ? std::vector<SunShadowRow>{}
+                        : runSunShadows(settings.bundlePath, suns, settings.force);
+}
 
 void printRemarks(const TabulateSettings& settings, const TabulateRow& row) {
     if (row.relativeDifferenceFromExact > 0)
@@ -50,14 +69,12 @@ void runTabulateCommand(int argc, char** argv) {
     if (!line.parse(argc, argv)) return;
 
     const std::vector<TabulateRow> rows = runTabulate(settings);
+    const std::vector<SunShadowRow> shadows =
+        settings.table.extractSun ? makeShadows(settings, rows) : std::vector<SunShadowRow>{};
     Report report;
     std::vector<Report> reportRows;
     for (const TabulateRow& row : rows) {
-        if (line.common().json != "-")
-            fmt::print("{}: {} ({})\n", row.environment, row.file,
-                       row.upToDate
-                           ? "current, nothing to do"
-                           : fmt::format("{:.1f} kB, {:.3f} s", double(row.bytes) * 1e-3, row.seconds));
+        if (line.common().json != "-") printFile(row.environment, row);
         if (line.common().json != "-") printRemarks(settings, row);
         Report one;
         one.set("environment", row.environment)
@@ -68,6 +85,16 @@ void runTabulateCommand(int argc, char** argv) {
             .set("seconds", row.seconds);
         reportRows.push_back(std::move(one));
     }
+    std::vector<Report> sunRows;
+    for (const SunShadowRow& shadow : shadows) {
+        if (line.common().json != "-") printFile("sun", shadow);
+        Report one;
+        one.set("file", shadow.file)
+            .set("bytes", uint64_t(shadow.bytes))
+            .set("up_to_date", shadow.upToDate)
+            .set("seconds", shadow.seconds);
+        sunRows.push_back(std::move(one));
+    }
     report.set("bundle", settings.bundlePath)
         .set("kind", settings.kind)
         .set("layout", settings.table.layout)
@@ -75,7 +102,8 @@ void runTabulateCommand(int argc, char** argv) {
         .set("variant", settings.table.variant)
         .set("window", settings.table.window)
         .set("extract_sun", settings.table.extractSun)
-        .set("rows", reportRows);
+        .set("rows", reportRows)
+        .set("suns", sunRows);
     report.write(line.common().json);
 }
 

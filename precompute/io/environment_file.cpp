@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <filesystem>
 #include <numbers>
@@ -171,6 +172,13 @@ Environment loadEnvironment(const std::string& pathOrSky, const EnvironmentOptio
     const FloatImage& image = environment.image;
     environment.contentHash = xxh3Hex(image.pixels.data(), image.pixels.size() * sizeof(float));
     return environment;
+}
+
+std::string environmentFileStem(const std::string& environmentName) {
+    std::string stem = environmentName;
+    for (char& c : stem)
+        if (!std::isalnum(static_cast<unsigned char>(c)) && c != '_' && c != '-') c = '_';
+    return stem;
 }
 
 double brightestFluxShare(const LatLongView& image, double solidAngleFraction) {

@@ -39,6 +39,9 @@ struct EnvironmentOptions {
 /// @throws UsageError  unknown layout, wrong parameters of a sky
 Environment loadEnvironment(const std::string& pathOrSky, const EnvironmentOptions& options = {});
 
+/// An environment's name as part of a file's: characters outside [A-Za-z0-9_-] become '_'.
+std::string environmentFileStem(const std::string& environmentName);
+
 /// Names that loadEnvironment knows behind "sky:".
 const std::vector<std::string>& proceduralSkyNames();
 

@@ -7,10 +7,13 @@ layout(binding = 3) uniform usampler2D triangles;
 layout(binding = 4) uniform sampler2DArray coefficients;  // [layers], four coefficients each
 layout(binding = 5) uniform sampler2DArray table;         // [3·layers (+ 1)] images of the layout
 layout(binding = 6) uniform usamplerBuffer indices;
+layout(binding = 7) uniform sampler2DArray sunShadows;  // four suns to a layer
 
 uniform int layers;
 uniform int tableSize;  // texels along the side of a face, without a border
 uniform ivec2 gridSize;
+uniform int sunCount;
+uniform vec3 sunDirection[8], sunIrradiance[8];
 
 layout(location = 0) out vec4 outRadiance;
 layout(location = 1) out vec4 outIrradiance;
@@ -65,29 +68,38 @@ Points pointsAt(ivec2 pixel, vec4 place) {
     return Points(ivec2[3](gridPoint(first), gridPoint(first + 1u), gridPoint(first + 2u)), b / (b.x + b.y + b.z));
 }
 
-vec4 coefficientsAt(Points points, int layer) {
-    return points.weights.x * texelFetch(coefficients, ivec3(points.corner[0], layer), 0) +
-           points.weights.y * texelFetch(coefficients, ivec3(points.corner[1], layer), 0) +
-           points.weights.z * texelFetch(coefficients, ivec3(points.corner[2], layer), 0);
+vec4 valuesAt(sampler2DArray image, Points points, int layer) {
+    return points.weights.x * texelFetch(image, ivec3(points.corner[0], layer), 0) +
+           points.weights.y * texelFetch(image, ivec3(points.corner[1], layer), 0) +
+           points.weights.z * texelFetch(image, ivec3(points.corner[2], layer), 0);
 }
 #else
 #define Points vec2
 
 Points pointsAt(ivec2 pixel, vec4 place) { return place.zw; }
 
-vec4 coefficientsAt(Points point, int layer) { return textureLod(coefficients, vec3(point, layer), 0.0); }
+vec4 valuesAt(sampler2DArray image, Points point, int layer) { return textureLod(image, vec3(point, layer), 0.0); }
 #endif
+
+/// Each sun: what it sends to a surface of this normal, times the share of its disc that the point sees.
+vec3 sunlight(Points points, vec3 normal) {
+    vec3 sum = vec3(0.0);
+    for (int i = 0; i < sunCount; ++i)
+        sum += sunIrradiance[i] * max(dot(normal, sunDirection[i]), 0.0) * valuesAt(sunShadows, points, i / 4)[i % 4];
+    return sum;
+}
 
 void main() {
     const ivec2 pixel = ivec2(gl_FragCoord.xy);
     const Points points = pointsAt(pixel, texelFetch(places, pixel, 0));
-    const vec3 normal = tablePoint(texelFetch(normals, pixel, 0).xyz);
-    vec3 irradiance = vec3(0.0);
+    const vec3 shadingNormal = texelFetch(normals, pixel, 0).xyz;
+    const vec3 normal = tablePoint(shadingNormal);
+    vec3 irradiance = sunlight(points, shadingNormal);
 #ifdef WITH_MEAN
-    irradiance = tableAt(normal, 3 * layers).rgb;
+    irradiance += tableAt(normal, 3 * layers).rgb;
 #endif
     for (int i = 0; i < layers; ++i) {
-        const vec4 k = coefficientsAt(points, i);
+        const vec4 k = valuesAt(coefficients, points, i);
         irradiance += vec3(dot(k, tableAt(normal, i)), dot(k, tableAt(normal, layers + i)),
                            dot(k, tableAt(normal, 2 * layers + i)));
     }

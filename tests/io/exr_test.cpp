@@ -13,6 +13,7 @@
 #include "precompute/base/parallel.h"
 #include "precompute/io/exr_file.h"
 #include "precompute/io/projection_attributes.h"
+#include "precompute/io/sun_shadow_file.h"
 #include "precompute/io/table_file.h"
 #include "precompute/io/visibility_file.h"
 #include "tests/base/small_disk.h"
@@ -265,6 +266,49 @@ INSTANTIATE_TEST_SUITE_P(Each, TableKinds,
                                          std::pair{TableKind::TripleProduct, 5},
                                          std::pair{TableKind::TripleProduct, 6},
                                          std::pair{TableKind::TripleProduct, 10}));
+
+TEST(Table, EveryLayoutRoundTrips) {
+    TemporaryDirectory directory;
+    for (const std::string& layout : TableLayout::names()) {
+        NormalTable table = randomTable(TableKind::TripleProduct, 4, 3, 6);
+        table.layout = layout;
+        table.values = randomFloats(size_t(3) * 6 * table.texels(), 6);
+        writeTableFile(directory.file("t.exr"), table);
+        const NormalTable back = readTableFile(directory.file("t.exr"));
+        EXPECT_EQ(back.layout, layout);
+        EXPECT_EQ(back.size, 4);
+        EXPECT_EQ(back.values, table.values);
+    }
+}
+
+TEST(SunShadowFile, RoundTrips) {
+    TemporaryDirectory directory;
+    for (const PointGrid& grid : {PointGrid{PointDomain::Texel, 7, 5, 35}, vertexGrid(1500)}) {
+        SunShadowMap map;
+        map.grid = grid;
+        map.direction = Vec3f(0.6f, 0.8f, 0);
+        map.angularRadiusRad = 0.01f;
+        map.irradiance = {1.5f, 1.25f, 0.5f};
+        for (size_t i = 0; i < grid.count; ++i) map.shadow.push_back(float(i % 65) / 64);  // exact in half
+        map.attributes = {{"environmentName", "noon"}, {"environmentHash", "12ab"}};
+        writeSunShadowFile(directory.file("s.exr"), map);
+        const SunShadowMap back = readSunShadowFile(directory.file("s.exr"));
+        EXPECT_EQ(back.grid.count, grid.count);
+        EXPECT_EQ(back.direction, map.direction);
+        EXPECT_EQ(back.angularRadiusRad, map.angularRadiusRad);
+        EXPECT_EQ(back.irradiance, map.irradiance);
+        EXPECT_EQ(back.shadow, map.shadow);
+        EXPECT_EQ(back.attributes, map.attributes);
+    }
+    EXPECT_EQ(sunShadowFileName("sunny day"), "tables/sunny_day.sun.exr");
+    EXPECT_THAT(messageOf([&] { readTableFile(directory.file("s.exr")); }), HasSubstr("sun-shadow"));
+    SunShadowMap bad;
+    bad.grid = {PointDomain::Texel, 2, 2, 4};
+    bad.direction = Vec3f(3, 0, 0);
+    bad.shadow.assign(4, 1.0f);
+    writeSunShadowFile(directory.file("bad.exr"), bad);
+    EXPECT_THAT(messageOf([&] { readSunShadowFile(directory.file("bad.exr")); }), HasSubstr("sunDirection"));
+}
 
 TEST(Table, ChannelsAreFourVectorsPerLayer) {
     TemporaryDirectory directory;

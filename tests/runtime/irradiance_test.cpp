@@ -2,6 +2,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "precompute/base/error.h"
 #include "precompute/math/sh.h"
 #include "runtime/renderer.h"
 #include "test_scenes.h"
@@ -72,6 +73,42 @@ TEST_P(Irradiance, HalfSpaceUnderUniformLight) {
             }
         }
     }
+}
+
+// Suns add their irradiance × cosine × shadow to every technique, and go away again.
+TEST_P(Irradiance, SunsAddTheirLight) {
+    GlContext context;
+    Scene scene = quad({0, 0, 0}, {1, 0, 0}, {0, 1, 0});
+    const PointGrid grid = gridFor(GetParam(), scene);
+    const VisibilityMap visibility = uniformVisibility(grid, 2, hemisphereSh(2, {0, 0, 1}));
+    const PcaMap pca = completePca(visibility, 0.1f);
+    Renderer renderer(context, scene, &visibility, &pca);
+    const NormalTable table = lightCosineTable(uniformLight, 2, 16);
+    renderer.setTable(table);
+    renderer.setTable(tripleProductTable(table, pca));
+    std::vector<SunLight> suns;
+    Vec3f expected = Vec3f::Zero();
+    for (int k = 0; k < kMostSuns; ++k) {
+        SunLight sun;
+        sun.direction = Vec3f(float(k) - 3.5f, 1, k == 6 ? -1.0f : 2.0f).normalized();
+        sun.irradiance = Vec3f(1, 0.5f, 0.25f) * float(k + 1);
+        sun.shadow.assign(grid.count, float(k) / 8);
+        expected += sun.irradiance * std::max(0.0f, sun.direction.z()) * (float(k) / 8);
+        suns.push_back(sun);
+    }
+    for (const Technique technique : {Technique::Unc, Technique::Pca}) {
+        renderer.setSuns({}, grid);
+        const RenderedFrame without = renderer.render(facing(), technique, kSmall);
+        renderer.setSuns(suns, grid);
+        const RenderedFrame with = renderer.render(facing(), technique, kSmall);
+        for (int c = 0; c < 3; ++c)
+            EXPECT_NEAR(with.irradiance.at(32, 24)[c] - without.irradiance.at(32, 24)[c], expected[c],
+                        1e-5f * expected[c]);
+        renderer.setSuns({}, grid);
+        EXPECT_EQ(renderer.render(facing(), technique, kSmall).irradiance.pixels, without.irradiance.pixels);
+    }
+    suns.resize(size_t(kMostSuns) + 1, suns[0]);
+    EXPECT_THROW(renderer.setSuns(suns, grid), InputError);
 }
 
 TEST_P(Irradiance, CompletePcaEqualsUncompressed) {

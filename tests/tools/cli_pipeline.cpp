@@ -184,6 +184,47 @@ TEST_F(Pipeline, StoredTablesOfEveryKindAreUsedWhereTheyFit) {
               "bundle");
 }
 
+/// With its sun extracted, a sky casts sharp shadows: much nearer to ray tracing than bands of V can be.
+TEST_F(Pipeline, AnExtractedSunHasItsOwnShadow) {
+    const auto errorOf = [&](std::vector<std::string> options) {
+        std::vector<std::string> arguments = {"relight",
+                                              "box.prt",
+                                              "--env",
+                                              "sky:sunset",
+                                              "--size",
+                                              "96x60",
+                                              "--azimuth",
+                                              "30",
+                                              "--elevation",
+                                              "50",
+                                              "--technique",
+                                              "unc",
+                                              "--compare-reference"};
+        arguments.insert(arguments.end(), options.begin(), options.end());
+        return runJson(folder_, arguments).at("rows")[0].at("relative_rmse").get<double>();
+    };
+    const double joined = errorOf({}), traced = errorOf({"--extract-sun"});
+    EXPECT_LT(traced, 0.6 * joined);
+    EXPECT_LT(errorOf({"--extract-sun", "--rotate", "100"}), 0.7 * errorOf({"--rotate", "100"}));
+
+    const auto made = runJson(folder_, {"tabulate", "box.prt", "sky:sunset", "sky:uniform", "--kind",
+                                        "light-cosine", "--extract-sun"});
+    ASSERT_EQ(made.at("suns").size(), 1u);
+    EXPECT_EQ(made.at("suns")[0].at("file"), "tables/sunset.sun.exr");
+    EXPECT_FALSE(made.at("suns")[0].at("up_to_date").get<bool>());
+    const auto again = runJson(folder_, {"tabulate", "box.prt", "sky:sunset", "sky:uniform", "--kind",
+                                         "light-cosine", "--extract-sun"});
+    EXPECT_TRUE(again.at("suns")[0].at("up_to_date").get<bool>());
+    const auto stored =
+        runJson(folder_, {"relight", "box.prt", "--env", "sky:sunset", "--size", "96x60", "--azimuth", "30",
+                          "--elevation", "50", "--extract-sun", "-o", "s.exr"});
+    EXPECT_EQ(stored.at("tables"), "bundle");
+    EXPECT_EQ(stored.at("suns"), 1);
+    EXPECT_NEAR(errorOf({"--extract-sun"}), traced, 1e-3);
+    // Without the option neither the table nor the sun of that bundle is taken.
+    EXPECT_NEAR(errorOf({}), joined, 1e-6);
+}
+
 TEST_F(Pipeline, StaleFilesAreNamedWithTheirCommand) {
     run({"tabulate", "box.prt", "sky:clear", "--kind", "triple-product"});
     ASSERT_EQ(
