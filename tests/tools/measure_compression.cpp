@@ -317,6 +317,8 @@ TEST(MeasureCompressionCommand, RefusesWhatItCannotMeasure) {
     EXPECT_THROW(run({missing, "--eye", "1,2"}), UsageError);
     EXPECT_THROW(run({missing, "--time-frames", "-1"}), UsageError);
     EXPECT_THROW(run({missing, "-o", prefix, "--quiet"}), InputError);
+    rewriteFile(folder.file("file"), "no folder");
+    EXPECT_THROW(run({missing, "-o", prefix, "--images", folder.file("file"), "--quiet"}), OutputError);
     setQuiet(false);
 }
 

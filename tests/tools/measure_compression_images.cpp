@@ -70,7 +70,8 @@ class CompressionImages : public testing::TestWithParam<bool> {
 
 TEST_P(CompressionImages, DrawsBothFigures) {
     CompressionScene scene(bundle_, false, 4);
-    const std::filesystem::path images = folder_.path() / "some" / "images";
+    const std::filesystem::path images = folder_.path() / "images";
+    checkCompressionFigures(images);
     const std::vector<PictureRow> rows =
         drawCompressionFigures(scene, {2, 4}, "unorm8", loadEnvironment("sky:overcast"), view_, images);
     // 4 and 12 vectors of 16, uncompressed; two orders, the reference.
@@ -122,14 +123,12 @@ TEST_P(CompressionImages, TimesEveryTechniqueBesideTheHighestOrder) {
 
 INSTANTIATE_TEST_SUITE_P(Domains, CompressionImages, testing::Values(false, true));
 
-TEST(CompressionImagesFolder, CannotBeAFile) {
+TEST(CompressionImagesFolder, IsCheckedBeforeLongWork) {
     const TemporaryDirectory folder;
-    setQuiet(true);
-    CompressionScene scene(test::boxBundle(folder, true, ProjectionKind::Plain), false, 4);
-    EXPECT_THROW(drawCompressionFigures(scene, {4}, "half", loadEnvironment("sky:overcast"), {},
-                                        folder.file("box.obj")),
-                 OutputError);
-    setQuiet(false);
+    checkCompressionFigures(folder.path() / "some" / "images");
+    EXPECT_EQ(folder.names(), (std::vector<std::string>{"some", "some/images"}));
+    rewriteFile(folder.file("file"), "no folder");
+    EXPECT_THROW(checkCompressionFigures(folder.file("file")), OutputError);
 }
 
 }  // namespace

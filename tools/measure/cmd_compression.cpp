@@ -99,6 +99,7 @@ void runMeasureCompression(int argc, char** argv) {
     if (!line.parse(argc, argv)) return;
     arguments.finish();
     checkMeasureOutput(arguments.options);
+    if (!arguments.images.empty()) checkCompressionFigures(arguments.images);
 
     const Stopwatch watch;
     const CompressionStudy& study = arguments.study;

@@ -196,14 +196,19 @@ double median(std::vector<double> values) {
 
 }  // namespace
 
+void checkCompressionFigures(const std::filesystem::path& folder) {
+    std::error_code error;
+    std::filesystem::create_directories(folder, error);
+    if (error) throw OutputError(folder.string(), "cannot be made: " + error.message());
+    const AtomicFile file((folder / "figure5.png").string());  // gone again at once
+    const GlContext context;
+}
+
 std::vector<PictureRow> drawCompressionFigures(CompressionScene& scene, const std::vector<int>& orders,
                                                const std::string& encoding, const Environment& environment,
                                                const CompressionView& view,
                                                const std::filesystem::path& folder) {
     PRT_CHECK(!orders.empty());
-    std::error_code error;
-    std::filesystem::create_directories(folder, error);
-    if (error) throw OutputError(folder.string(), "cannot be made: " + error.message());
     View pictures(scene, environment, view);
     const int highest = orders.back();
     const VisibilityMap& map = scene.visibility(highest);

@@ -25,6 +25,12 @@ struct PictureRow {
     double relativeRmse = 0;           ///< over covered pixels and colours
 };
 
+/// Makes sure before long work that pictures can be drawn and written.
+/// @param folder  made when it is not there
+/// @throws InputError   no OSMesa
+/// @throws OutputError  the folder cannot be made, or not be written to
+void checkCompressionFigures(const std::filesystem::path& folder);
+
 /// Numbers of vectors in the paper's Fig. 5.
 inline constexpr int kFigure5Components[] = {4, 12, 24};
 
@@ -34,7 +40,7 @@ inline constexpr int kFigure5Components[] = {4, 12, 24};
 ///           to uncompressed
 ///   Fig. 6  every order, uncompressed, and ray tracing; 4 × differences to ray tracing
 /// Normal maps of the materials are on.
-/// @param folder    made when it is not there; files in it are replaced
+/// @param folder    one that checkCompressionFigures passed; files in it are replaced
 /// @param orders    rising, at least one   @param encoding  of weights
 /// @throws InputError  no OSMesa; OutputError; Interrupted
 /// @source [IwanickiSloan2012, Figs. 5 and 6]
