@@ -67,6 +67,7 @@ TEST(MeasureErrorCommand, WritesTablesJsonAndHeatMaps) {
                             "\"components\": 4",
                             "\"compressed\": true",
                             "\"points\": 20",
+                            "\"knobs\": [",
                             "\"command\": \"prt ",
                             "\"scale\": \"logarithmic\"",
                             "\"low\": ",

@@ -138,10 +138,18 @@ std::vector<Report> imageReports(const std::vector<ErrorImage>& images) {
 }
 
 Report settingsReport(const JudgedBundle& bundle, const ErrorResult& result, const ErrorStudy& study,
-                      const ErrorAdvice& advice) {
+                      const std::vector<ErrorKnob>& knobs) {
     const ErrorBlock& mean = result.mean;
-    Report turn, report;
-    turn.set("stage", advice.stage).set("gain", advice.gain).set("command", advice.command);
+    std::vector<Report> turns;
+    for (const ErrorKnob& knob : knobs) {
+        Report turn;
+        turn.set("stage", errorStageName(knob.stage))
+            .set("gain", knob.gain)
+            .set("relative_rmse", knob.left)
+            .set("command", knob.command);
+        turns.push_back(std::move(turn));
+    }
+    Report report;
     report.set("domain", pointDomainName(bundle.visibility.grid.domain))
         .set("order", bundle.visibility.shOrder)
         .set("projection", projectionName(bundle.visibility.projection.kind))
@@ -161,7 +169,7 @@ Report settingsReport(const JudgedBundle& bundle, const ErrorResult& result, con
         .set("relative_rmse", mean.total.relativeRmse)
         .set("psnr_db", finite(mean.total.psnrDb))
         .set("environment_count", uint64_t(result.environments.size()))
-        .set("turn", turn);
+        .set("knobs", turns);
     return report;
 }
 
@@ -219,8 +227,8 @@ void runMeasureError(int argc, char** argv) {
 
     std::vector<ErrorImage> written;
     if (study.maps) written = writeErrorImages(images, result, judged, bundle.visibility.grid);
-    const ErrorAdvice advice = adviseOnErrors(path, bundle, result, study, sources);
-    Report report = settingsReport(bundle, result, study, advice);
+    const std::vector<ErrorKnob> knobs = knobsOf(path, bundle, result, study, sources);
+    Report report = settingsReport(bundle, result, study, knobs);
     report.set("bundle", path).set("images", imageReports(written)).set("seconds", watch.seconds());
     Measurement measurement{.name = "error", .rows = rowTable(result)};
     measurement.more = {{"parts", partTable(result)}};
@@ -229,7 +237,7 @@ void runMeasureError(int argc, char** argv) {
     for (const ErrorImage& image : written)
         measurement.summary += fmt::format("{}: {:.2g} to {:.2g}\n", image.file, image.low, image.high);
     writeMeasurement(measurement, options, line.common(), std::move(report));
-    if (line.common().json != "-") fmt::print("{}\n", advice.text);
+    if (line.common().json != "-") fmt::print("{}", knobText(knobs, result.mean.total.relativeRmse));
 }
 
 }  // namespace prt::tools

@@ -59,10 +59,13 @@ class Knobs {
         return withOption(bundle_.bakeCommand, "--rays", std::to_string(2 * count));
     }
     std::string moreBands() const {
-        const int shOrder = bundle_.visibility.shOrder;
-        if (shOrder >= kMaxBundleShOrder) return "";
-        return withOption(bundle_.bakeCommand, "--order",
-                          std::to_string(std::min(kMaxBundleShOrder, shOrder + kMoreBands)));
+        const int now = bundle_.visibility.shOrder, more = std::min(kMaxBundleShOrder, now + kMoreBands);
+        if (now >= kMaxBundleShOrder) return "";
+        std::string command = withOption(bundle_.bakeCommand, "--order", std::to_string(more));
+        if (result_.isCompressed)
+            command += fmt::format(" && prt compress {} --components {}", path_,
+                                   (result_.components * shCount(more) + shCount(now) - 1) / shCount(now));
+        return command;
     }
     std::string moreVectors() const {
         const int all = shCount(bundle_.visibility.shOrder), now = result_.components;
@@ -114,27 +117,30 @@ std::string withOption(const std::string& command, const std::string& option, co
     return command.substr(0, begin) + value + command.substr(end);
 }
 
-ErrorAdvice adviseOnErrors(const std::string& path, const JudgedBundle& bundle, const ErrorResult& result,
-                           const ErrorStudy& study, const std::vector<std::string>& sources) {
+std::vector<ErrorKnob> knobsOf(const std::string& path, const JudgedBundle& bundle, const ErrorResult& result,
+                               const ErrorStudy& study, const std::vector<std::string>& sources) {
     const Knobs knobs(path, bundle, result, study, sources);
-    ErrorAdvice advice;
-    advice.stage = "none";
+    std::vector<ErrorKnob> found;
     for (size_t s = 0; s < kErrorStages; ++s) {
-        const ErrorStage stage = ErrorStage(s);
-        const double gain = result.mean.gain(stage), noise = result.mean.without[s].noise;
-        if (gain <= noise || gain <= advice.gain) continue;
-        std::string command = knobs.command(stage);
-        if (command.empty()) continue;
-        advice = {errorStageName(stage), gain, std::move(command), ""};
+        const ErrorFigure& without = result.mean.without[s];
+        ErrorKnob knob{ErrorStage(s), result.mean.gain(ErrorStage(s)), without.relativeRmse, ""};
+        if (knob.gain <= without.noise) continue;
+        knob.command = knobs.command(knob.stage);
+        if (!knob.command.empty()) found.push_back(std::move(knob));
     }
-    if (advice.command.empty()) {
-        advice.text = "no knob gains more than the noise of this measurement";
-        return advice;
-    }
-    advice.text = fmt::format("turn first: {} ({:.4f} would become {:.4f} if it were exact): {}",
-                              advice.stage, result.mean.total.relativeRmse,
-                              result.mean.total.relativeRmse - advice.gain, advice.command);
-    return advice;
+    std::stable_sort(found.begin(), found.end(),
+                     [](const ErrorKnob& a, const ErrorKnob& b) { return a.gain > b.gain; });
+    return found;
+}
+
+std::string knobText(const std::vector<ErrorKnob>& knobs, double total) {
+    if (knobs.empty()) return "no knob gains more than the noise of this measurement\n";
+    std::string text;
+    for (size_t k = knobs.size(); k-- > 0;)
+        text += fmt::format("{}: {} ({:.4f} would become {:.4f} if it were exact): {}\n",
+                            k == 0 ? "turn first" : "then", errorStageName(knobs[k].stage), total,
+                            knobs[k].left, knobs[k].command);
+    return text;
 }
 
 }  // namespace prt::tools
