@@ -13,6 +13,7 @@
 
 #include "compress/export_shaders.h"
 #include "compress/export_textures.h"
+#include "compress/shipped_bytes.h"
 #include "precompute/base/atomic_file.h"
 #include "precompute/base/error.h"
 #include "precompute/base/log.h"
@@ -44,8 +45,8 @@ void checkChoice(const std::string& option, const std::string& value,
 
 void checkSettings(const ExportSettings& settings) {
     checkChoice("--container", settings.container, {"ktx2", "dds"});
-    checkChoice("--weights", settings.weights, {"float", "half", "unorm16", "unorm8"});
-    checkChoice("--tables", settings.tables, {"float", "half", "rgb9e5", "r11f"});
+    checkChoice("--weights", settings.weights, pointEncodings());
+    checkChoice("--tables", settings.tables, tableEncodings());
     checkChoice("--visibility", settings.visibility, {"auto", "half", "float", "none"});
 }
 

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include "compress/export_bundle.h"
+#include "compress/shipped_bytes.h"
 #include "tools/command_line.h"
 #include "tools/commands.h"
 #include "tools/report.h"
@@ -69,9 +70,9 @@ void runExportCommand(int argc, char** argv) {
     line.positional("BUNDLE", settings.bundlePath, "bundle made by prt precompute");
     line.text("-o,--output", settings.folder, "FOLDER", "where to write; made when it is not there", true);
     line.choice("--container", settings.container, {"ktx2", "dds"}, "kind of the texture files");
-    line.choice("--weights", settings.weights, {"float", "half", "unorm16", "unorm8"},
+    line.choice("--weights", settings.weights, pointEncodings(),
                 "format of the weights; unorm has a scale and bias per component");
-    line.choice("--tables", settings.tables, {"float", "half", "rgb9e5", "r11f"}, "format of the tables");
+    line.choice("--tables", settings.tables, tableEncodings(), "format of the tables");
     line.choice(
         "--visibility", settings.visibility, {"auto", "half", "float", "none"},
         "SH coefficients of visibility; auto: half where a light-cosine table needs them or the bundle is "

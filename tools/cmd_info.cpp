@@ -1,8 +1,13 @@
 // prt info: what a bundle holds.
 #include <fmt/format.h>
 
+#include "compress/shipped_bytes.h"
 #include "precompute/base/log.h"
 #include "precompute/io/bundle.h"
+#include "precompute/io/exr_conventions.h"
+#include "precompute/io/exr_file.h"
+#include "precompute/io/visibility_file.h"
+#include "precompute/math/sh.h"
 #include "tools/command_line.h"
 #include "tools/commands.h"
 #include "tools/report.h"
@@ -20,8 +25,88 @@ std::string describe(const std::string& name) {
         return "table: light x cosine, n*n values per colour";
     if (name.find(".triple-product.") != std::string::npos)
         return "table: light x cosine x component, four components per RGBA layer, mean";
+    if (name.ends_with(".sun.exr"))
+        return "sun of an environment: visible share of its disc, direction, irradiance";
     return "";
 }
+
+// A file of the bundle that may be read.
+bool isCurrent(const Bundle& bundle, const std::string& name) {
+    return bundle.find(name) && bundle.staleReason(name, false).empty();
+}
+
+// What a point and a normal take where prt export ships them, by format.
+class ShippedBytes {
+  public:
+    explicit ShippedBytes(const Bundle& bundle) {
+        if (isCurrent(bundle, "visibility.exr")) {
+            const VisibilityReader reader(bundle.pathOf("visibility.exr").string());
+            domain_ = pointDomainName(reader.header().grid.domain);
+            coefficients_ = shCount(reader.header().shOrder);
+        }
+        if (isCurrent(bundle, "pca.exr")) components_ = componentsOf(bundle.pathOf("pca.exr").string());
+    }
+
+    void print() const {
+        if (rows().empty()) return;
+        fmt::print("\nbytes as prt export ships them, per {} and per normal of one environment's table\n",
+                   domain_);
+        for (const Row& row : rows()) {
+            fmt::print("  {:<44}", fmt::format("{} ({} values)", row.what, row.values));
+            for (const auto& [encoding, bytes] : row.bytes) fmt::print("  {} {}", encoding, bytes);
+            fmt::print("\n");
+        }
+    }
+    std::vector<Report> reports() const {
+        std::vector<Report> reports;
+        for (const Row& row : rows()) {
+            Report bytes, report;
+            for (const auto& [encoding, count] : row.bytes) bytes.set(encoding, uint64_t(count));
+            report.set("what", row.what)
+                .set("values", row.values)
+                .set("per", row.perPoint ? domain_ : "normal")
+                .set("bytes", bytes);
+            reports.push_back(std::move(report));
+        }
+        return reports;
+    }
+
+  private:
+    struct Row {
+        std::string what;
+        int values;
+        bool perPoint;
+        std::vector<std::pair<std::string, size_t>> bytes;
+    };
+
+    static int componentsOf(const std::string& path) {
+        const ExrReader reader(path);
+        for (const ExrPartInfo& part : reader.parts())
+            if (part.attributes.ints.contains("componentCount"))
+                return requireInt(part.attributes, "componentCount", 1, 1 << 14, path);
+        return 0;
+    }
+    std::vector<Row> rows() const {
+        std::vector<Row> rows;
+        const auto add = [&](const std::string& what, int values, bool isWeights) {
+            if (values == 0) return;
+            Row points{what, values, true, {}}, table{what + ", table", values, false, {}};
+            for (const std::string& encoding : pointEncodings())
+                if (isWeights || !encoding.starts_with("unorm"))
+                    points.bytes.emplace_back(encoding, shippedBytes(values, encoding));
+            for (const std::string& encoding : tableEncodings())
+                table.bytes.emplace_back(encoding, shippedTableBytes(values, isWeights, encoding));
+            rows.push_back(std::move(points));
+            rows.push_back(std::move(table));
+        };
+        add("visibility coefficients", coefficients_, false);
+        add("weights of components", components_, true);
+        return rows;
+    }
+
+    std::string domain_ = "point";
+    int coefficients_ = 0, components_ = 0;
+};
 
 }  // namespace
 
@@ -67,9 +152,12 @@ void runInfoCommand(int argc, char** argv) {
     Report conventions;
     for (const auto& [name, meaning] : bundle.conventions()) conventions.set(name, meaning);
     report.set("conventions", conventions).set("files", files).set("bytes", total);
+    const ShippedBytes shipped(bundle);
+    report.set("shipped_bytes", shipped.reports());
     for (const std::string& name : bundle.sectionNames()) report.setJson(name, bundle.section(name));
     if (text) {
         fmt::print("  {:<44} {:>10.3f} MB\n", "all", double(total) * 1e-6);
+        shipped.print();
         fmt::print("\nconventions\n");
         for (const auto& [name, meaning] : bundle.conventions()) fmt::print("  {:<22}{}\n", name, meaning);
         for (const std::string& name : bundle.sectionNames())

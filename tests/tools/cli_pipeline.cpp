@@ -225,6 +225,19 @@ TEST_F(Pipeline, AnExtractedSunHasItsOwnShadow) {
     EXPECT_NEAR(errorOf({}), joined, 1e-6);
 }
 
+TEST_F(Pipeline, InfoGivesBytesAsShipped) {
+    const auto rows = runJson(folder_, {"info", "box.prt"}).at("shipped_bytes");
+    ASSERT_EQ(rows.size(), 4u);  // coefficients and weights, each with its table
+    EXPECT_EQ(rows[0].at("per"), "texel");
+    EXPECT_EQ(rows[0].at("bytes").at("half"), 32);
+    EXPECT_FALSE(rows[0].at("bytes").contains("unorm8"));
+    EXPECT_EQ(rows[2].at("values"), 16);
+    EXPECT_EQ(rows[2].at("bytes").at("unorm8"), 16);
+    EXPECT_EQ(rows[3].at("per"), "normal");
+    EXPECT_EQ(rows[3].at("bytes").at("half"), 13 * 8);
+    EXPECT_EQ(rows[3].at("bytes").at("rgb9e5"), 17 * 4);
+}
+
 TEST_F(Pipeline, StaleFilesAreNamedWithTheirCommand) {
     run({"tabulate", "box.prt", "sky:clear", "--kind", "triple-product"});
     ASSERT_EQ(

@@ -34,6 +34,9 @@ TEST(CompressionCost, BytesAreThoseOfTextures) {
     table.shOrder = 3;
     table.layers = 10;
     table.values.assign(3 * 10 * table.texels(), 0.0f);
+    for (const std::string& encoding : tableEncodings())
+        EXPECT_EQ(shippedTableBytes(9, true, encoding) * 24, encodeTable(table, encoding).image.bytes.size())
+            << encoding;
     EXPECT_EQ(tableBytes(9, true, 2), encodeTable(table, "half").image.bytes.size());
     table.kind = TableKind::LightCosine;
     EXPECT_EQ(tableBytes(10, false, 2), encodeTable(table, "half").image.bytes.size());

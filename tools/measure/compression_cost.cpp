@@ -12,29 +12,11 @@ constexpr size_t kBytesOfHalf = 2;
 
 int layersOf(int values) { return (values + 3) / 4; }
 
-size_t bytesOfValue(const std::string& encoding) {
-    if (encoding == "float") return 4;
-    if (encoding == "unorm8") return 1;
-    PRT_CHECK(encoding == "half" || encoding == "unorm16");
-    return 2;
-}
-
 }  // namespace
-
-const std::vector<std::string>& pointEncodings() {
-    static const std::vector<std::string> names = {"float", "half", "unorm16", "unorm8"};
-    return names;
-}
-
-size_t shippedBytes(int values, const std::string& encoding) {
-    PRT_CHECK_LE(1, values);
-    return 4 * size_t(layersOf(values)) * bytesOfValue(encoding);
-}
 
 size_t tableBytes(int values, bool hasMean, int size) {
     PRT_CHECK_LE(1, size);
-    const size_t images = 3 * size_t(layersOf(values)) + (hasMean ? 1 : 0);
-    return images * 4 * kBytesOfHalf * 6 * size_t(size) * size_t(size);
+    return shippedTableBytes(values, hasMean, "half") * 6 * size_t(size) * size_t(size);
 }
 
 PixelCost pixelCost(int values, bool hasMean, PointDomain domain) {

@@ -5,17 +5,10 @@
 #include <string>
 #include <vector>
 
+#include "compress/shipped_bytes.h"
 #include "precompute/io/visibility_file.h"
 
 namespace prt::tools {
-
-/// Formats of point textures: "float", "half", "unorm16", "unorm8".
-const std::vector<std::string>& pointEncodings();
-
-/// Bytes of a point as `prt export` writes it: four values to a texel, so 4·⌈values/4⌉ of them.
-/// @param values    n² coefficients, or M weights; at least 1
-/// @param encoding  one of pointEncodings()
-size_t shippedBytes(int values, const std::string& encoding);
 
 /// Bytes of the tables of one environment as half floats, four functions to a texel: three colours, and RGB
 /// of the mean.
