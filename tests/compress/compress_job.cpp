@@ -127,7 +127,7 @@ TEST_F(Jobs, CompressDoesNothingWhereNothingChanged) {
 
 TEST_F(Jobs, RenewalCommandsAreGoodForAShell) {
     writeBundle(testVisibility(3, 2));
-    runTabulate({bundle_, {"sky:constant?r=1&g=2&b=3"}, "light-cosine", "cube", 4});
+    runTabulate({bundle_, {"sky:constant?r=1&g=2&b=3"}, "light-cosine", {"cube", 4}});
     const Bundle bundle = Bundle::open(bundle_);
     for (const BundleFile& file : bundle.files())
         if (file.name.starts_with("tables/")) {
