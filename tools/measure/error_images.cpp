@@ -21,7 +21,7 @@ constexpr double kHighPercentile = 0.99;  // of the total, where the ramp ends
 class AtlasFill {
   public:
     AtlasFill(const JudgedPoints& points, const PointGrid& grid)
-        : points_(points), measured_(grid.count, 0), judged_(grid.count, kNoPoint) {
+        : measured_(grid.count, 0), judged_(grid.count, kNoPoint) {
         PRT_CHECK_EQ(points.chart.size(), grid.count);
         std::vector<uint8_t> has(grid.count, 0);
         for (size_t p = 0; p < points.place.size(); ++p) {
@@ -48,7 +48,6 @@ class AtlasFill {
     const std::vector<uint32_t>& measured() const { return measured_; }
 
   private:
-    const JudgedPoints& points_;
     std::vector<uint32_t> measured_, judged_;
 };
 
