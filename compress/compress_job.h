@@ -15,7 +15,7 @@ struct CompressSettings {
     /// projects its coefficients.
     std::string weights = "irradiance";
     /// What the vectors are the principal ones of: "irradiance" refines them for what irradiance sees, where
-    /// weights and projection are for irradiance too; "plain" takes coefficients as they are.
+    /// weights are for irradiance too; "plain" takes coefficients as they are.
     std::string covariance = "irradiance";
     /// Points count as much as the surface that they stand for (PointAreas), in the vectors and in the errors
     /// of the report; else all the same. Needs mesh.glb.

@@ -71,9 +71,7 @@ VisibilityStatistics::VisibilityStatistics(const VisibilityRows& rows, const Pro
 
 PcaResult VisibilityStatistics::basis(const CompressionSettings& settings) const {
     PcaResult pca = principalComponents(moments_, settings.components);
-    if (settings.covariance == Covariance::Plain || settings.fit == WeightsFit::Plain ||
-        projection_.kind == ProjectionKind::Plain)
-        return pca;
+    if (settings.covariance == Covariance::Plain || settings.fit == WeightsFit::Plain) return pca;
     const SampledRows sample = thinned(sample_, size_t(shCount(shOrder_)), mostRefinementRows(shOrder_));
     const std::vector<double> covariance = moments_.covariance();
     for (int round = 0; round < kRefinements; ++round) {

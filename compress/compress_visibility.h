@@ -42,9 +42,9 @@ class VisibilityStatistics {
     /// @param projection  how the rows were made; where it is plain, the metric is that of its weight
     VisibilityStatistics(const VisibilityRows& rows, const Projection& projection);
 
-    /// Mean and principal vectors. Where the covariance is that of irradiance, weights are fitted for it and
-    /// rows were projected for it, the plain vectors of cut expansions are refined by steps of alternating
-    /// least squares on the sample (refine_basis.h); else they stay plain.
+    /// Mean and principal vectors. Where the covariance is that of irradiance and weights are fitted for it,
+    /// plain vectors are refined by steps of alternating least squares on the sample (refine_basis.h); else
+    /// they stay plain.
     /// @throws InputError  no point counts; Interrupted
     PcaResult basis(const CompressionSettings& settings) const;
     /// Points that count, 4096 at most.

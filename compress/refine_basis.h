@@ -13,7 +13,8 @@ namespace prt {
 /// (M + 1)·n² above which vectors stay as they are: so many of them leave nothing to gain.
 inline constexpr int kMostRefinedValues = 2048;
 
-/// Rows that a step looks at, at most: no more make a better basis, and their metrics take memory.
+/// Rows that a step looks at, at most: no more make a better basis. Their metrics take up to 64 MB (n = 10;
+/// 21 MB at 6, 1 MB at 3).
 size_t mostRefinementRows(int shOrder);
 
 /// One step of alternating least squares: the mean and basis that minimise Σ_p a_p e_pᵀ A(n_p) e_p,

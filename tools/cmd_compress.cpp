@@ -24,8 +24,8 @@ void runCompressCommand(int argc, char** argv) {
                 "least squares of the irradiance that shading normals receive, or of the coefficients");
     line.choice(
         "--covariance", settings.covariance, {"irradiance", "plain"},
-        "what the vectors are the principal ones of: errors as irradiance sees them, where --weights and "
-        "the bundle's projection are for irradiance too, or coefficients");
+        "what the vectors are the principal ones of: errors as irradiance sees them, where --weights are "
+        "for irradiance too, or coefficients");
     line.flag("--area-weighted", settings.areaWeighted,
               "let points count as much as the surface they stand for, in vectors and reported errors");
     line.real("--target-error", settings.targetError, 0, 1,

@@ -30,10 +30,11 @@ TEST_P(JobsWeights, CompressWritesWhatTheAlgorithmSays) {
     const CompressReport report = runCompress({bundle_, 5, GetParam()});
     std::vector<uint8_t> valid;
     for (const Validity validity : map.validity) valid.push_back(validity == Validity::Valid);
-    const PcaResult pca = computePca(map.coefficients, valid, 16, 5);
-    const std::vector<float> weights = isPlain
-                                           ? projectPca(pca, map.coefficients, 16)
-                                           : projectPcaForIrradiance(pca, map.coefficients, map.normals, 4);
+    const CompressedVisibility compressed =
+        compressVisibility(map.coefficients, valid, map.normals, 4, map.projection, 5,
+                           isPlain ? WeightsFit::Plain : WeightsFit::Irradiance);
+    const PcaResult& pca = compressed.pca;
+    const std::vector<float>& weights = compressed.weights;
 
     EXPECT_EQ(report.components, 5);
     EXPECT_EQ(report.points, map.grid.count / 5);
@@ -79,7 +80,7 @@ TEST_F(Jobs, WeightsForIrradianceAreTheDefaultAndTradeOneErrorForTheOther) {
     EXPECT_EQ(runCompress({bundle_, 6, "irradiance"}).irradianceRelativeRmse, fitted.irradianceRelativeRmse);
     EXPECT_LT(fitted.irradianceRelativeRmse, plain.irradianceRelativeRmse);
     EXPECT_GT(fitted.relativeRmse, plain.relativeRmse);
-    EXPECT_EQ(fitted.explainedVariance, plain.explainedVariance);
+    EXPECT_LE(fitted.explainedVariance, plain.explainedVariance);
     expectRefused<UsageError>(
         [&] {
             runCompress({bundle_, 6, "best"});
@@ -304,6 +305,7 @@ TEST_F(Jobs, AreaWeightedPointsCountAsTheirSurface) {
     const VisibilityMap map = testVisibility(3, 22);
     writeBundle(map);
     CompressSettings settings{bundle_, 4};
+    settings.covariance = "plain";
     settings.areaWeighted = true;
     expectRefused<InputError>([&] { runCompress(settings); }, {"mesh.glb"});
     {

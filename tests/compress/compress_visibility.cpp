@@ -23,14 +23,21 @@ TEST(CompressVisibility, OfPlainRowsIsPcaWithTheWeightsAskedFor) {
     const int shOrder = 4, dimension = shCount(shOrder);
     const Points points = testPoints(shOrder, 500, 3, 60);
     const PcaResult pca = computePca(points.rows, {}, dimension, 6);
-    const auto compressed = [&](WeightsFit fit) {
-        return compressVisibility(points.rows, {}, points.normals, shOrder, kPlainProjection, 6, fit);
+    const auto compressed = [&](WeightsFit fit, Covariance covariance) {
+        return compressVisibility(points.rows, {}, points.normals, shOrder, kPlainProjection, 6, fit,
+                                  covariance);
     };
-    EXPECT_EQ(compressed(WeightsFit::Plain).pca.basis, pca.basis);
-    EXPECT_EQ(compressed(WeightsFit::Plain).weights, projectPca(pca, points.rows, dimension));
-    EXPECT_EQ(compressed(WeightsFit::Irradiance).pca.basis, pca.basis);
-    EXPECT_EQ(compressed(WeightsFit::Irradiance).weights,
-              projectPcaForIrradiance(pca, points.rows, points.normals, shOrder));
+    for (const Covariance covariance : {Covariance::Plain, Covariance::Irradiance}) {
+        const CompressedVisibility plain = compressed(WeightsFit::Plain, covariance);
+        EXPECT_EQ(plain.pca.basis, pca.basis);
+        EXPECT_EQ(plain.weights, projectPca(pca, points.rows, dimension));
+    }
+    const CompressedVisibility fitted = compressed(WeightsFit::Irradiance, Covariance::Plain);
+    EXPECT_EQ(fitted.pca.basis, pca.basis);
+    EXPECT_EQ(fitted.weights, projectPcaForIrradiance(pca, points.rows, points.normals, shOrder));
+    const CompressedVisibility refined = compressed(WeightsFit::Irradiance, Covariance::Irradiance);
+    EXPECT_LT(irradianceRelativeRmse(refined.pca, points.rows, refined.weights, points.normals, {}, shOrder),
+              irradianceRelativeRmse(pca, points.rows, fitted.weights, points.normals, {}, shOrder));
 }
 
 // Weighted expansions of the same visibility.
