@@ -39,7 +39,9 @@ struct CompressionSettings {
 /// apart. Mean and covariance are those of the expansions cut at their horizons.
 class VisibilityStatistics {
   public:
+    /// @param rows        gone through once, not kept
     /// @param projection  how the rows were made; where it is plain, the metric is that of its weight
+    /// @throws InputError  a point that counts is not finite, or the file is damaged; Interrupted
     VisibilityStatistics(const VisibilityRows& rows, const Projection& projection);
 
     /// Mean and principal vectors. Where the covariance is that of irradiance and weights are fitted for it,
@@ -49,6 +51,7 @@ class VisibilityStatistics {
     PcaResult basis(const CompressionSettings& settings) const;
     /// Points that count, 4096 at most.
     const SampledRows& sample() const { return sample_; }
+    /// Number of points that count, of all.
     size_t pointsUsed() const { return moments_.rowsUsed(); }
 
   private:
