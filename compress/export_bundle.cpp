@@ -77,7 +77,7 @@ Source readSource(const Bundle& bundle, const ExportSettings& settings, ExportRe
         if (!file.name.starts_with(kTableFolder)) continue;
         if (!file.name.ends_with(kCubeEnding)) {
             report.notExported.push_back(file.name);
-            logWarning(fmt::format("{} is no cube and is not exported", file.name));
+            logWarning(fmt::format("{} is no table in a cube and is not exported", file.name));
             continue;
         }
         bundle.require(file.name, fmt::format("prt tabulate {}", settings.bundlePath));

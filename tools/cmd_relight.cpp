@@ -361,7 +361,7 @@ void runRelightCommand(int argc, char** argv) {
     RelightArguments arguments;
     CommandLine line("prt relight",
                      "Draws a bundle under any blend of environments, and compares with ray-traced truth.",
-                     "Environments: latitude-longitude .exr or .hdr, EXR cubes, or sky:clear, sky:overcast, "
+                     "Environments: .exr or .hdr in any layout of --env-layout, or sky:clear, sky:overcast, "
                      "sky:sunset, sky:uniform.\n"
                      "Examples:\n"
                      "  prt relight out/house.prt --env sunset.exr:0.7 --env night.exr:0.3 --rotate 40 "

@@ -11,9 +11,9 @@ void addTableOptions(CommandLine& line, const std::string& prefix, TableOptions&
                  "texels along the side of a face of the tables");
     line.choice(prefix + "variant", options.variant, tableVariantNames(),
                 "all bands of the cosine that matter, or the paper's three");
-    line.text("--window", options.window, "NAME[:BANDS]",
-              "smooths the light against ringing: none, hanning, lanczos, gaussian; as little as leaves it "
-              "nowhere negative, or by a width in bands");
+    line.text("--window", options.window, "NAME[:WIDTH]",
+              "smooths the light against ringing: none, hanning, lanczos, gaussian; as wide as the light has "
+              "bands, or a width in bands, or auto: the widest that leaves it nowhere negative");
     line.flag("--extract-sun", options.extractSun,
               "the sun of an environment becomes a light of its own, with sharp shadows");
 }

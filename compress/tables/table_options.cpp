@@ -20,7 +20,8 @@ constexpr double kWidestWindow = 1000;
 
 struct Window {
     ShWindow kind;
-    std::optional<double> width;  ///< bands; empty: as narrow as the light needs
+    std::optional<double> width;  ///< bands
+    bool isAuto = false;          ///< as wide as leaves nothing negative
 };
 
 std::optional<Window> parseWindow(const std::string& text) {
@@ -28,7 +29,8 @@ std::optional<Window> parseWindow(const std::string& text) {
     const size_t colon = text.find(':');
     const std::string name = text.substr(0, colon);
     const auto refuse = [&](const std::string& problem) {
-        throw UsageError("--window", problem, "use none, hanning, lanczos or gaussian, or NAME:WIDTH");
+        throw UsageError("--window", problem,
+                         "use none, hanning, lanczos or gaussian, NAME:WIDTH or NAME:auto");
     };
     Window window{};
     if (name == "hanning")
@@ -40,6 +42,8 @@ std::optional<Window> parseWindow(const std::string& text) {
     else
         refuse(fmt::format("there is no window called '{}'", name));
     if (colon == std::string::npos) return window;
+    window.isAuto = text.substr(colon + 1) == "auto";
+    if (window.isAuto) return window;
     double width = 0;
     const char* const end = text.data() + text.size();
     const auto [last, error] = std::from_chars(text.data() + colon + 1, end, width);
@@ -87,8 +91,9 @@ std::string tableWords(const TableOptions& options) {
 double applyTableWindow(const TableOptions& options, EnvironmentSh& environment) {
     const std::optional<Window> window = parseWindow(options.window);
     if (!window) return 0;
-    const double width =
-        window->width ? *window->width : findConservativeWindow(environment, window->kind).width;
+    const double width = window->width    ? *window->width
+                         : window->isAuto ? findNonNegativeWindow(environment, window->kind)
+                                          : environment.shOrder;
     applyShWindow(window->kind, width, environment);
     return width;
 }

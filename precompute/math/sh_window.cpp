@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "precompute/base/check.h"
+#include "precompute/math/directions.h"
 #include "precompute/math/sh.h"
 #include "precompute/math/sh_legendre.h"
 #include "precompute/math/sh_rotation.h"
@@ -133,6 +134,68 @@ double widthOf(double strength) {
     return strength > 0 ? 1 / strength : std::numeric_limits<double>::infinity();
 }
 
+/// The smallest strength that leaves nothing negative, as a width: the first step that suffices, then
+/// bisection. Minima rise with the strength but for small waves.
+/// @param negative  of a strength
+template <class Negative>
+double widestWidth(ShWindow window, const Negative& negative) {
+    if (!negative(0.0)) return widthOf(0);
+    const double full = fullStrength(window);
+    double weak = 0, strong = full;
+    for (int step = 1; step < kStrengthSteps; ++step) {
+        const double strength = full * step / kStrengthSteps;
+        if (!negative(strength)) {
+            strong = strength;
+            break;
+        }
+        weak = strength;
+    }
+    for (int step = 0; step < kBisections; ++step) {
+        const double middle = 0.5 * (weak + strong);
+        (negative(middle) ? weak : strong) = middle;
+    }
+    return widthOf(strong);
+}
+
+/// What every band adds in every one of a dense set of directions.
+class BandValues {
+  public:
+    explicit BandValues(const EnvironmentSh& environment) : order_(environment.shOrder) {
+        const std::vector<Vec3f> directions = sphericalFibonacci(kDirectionsPerCoefficient * shCount(order_));
+        std::vector<float> basis(size_t(shCount(order_)));
+        for (const Vec3f& direction : directions) {
+            evalSh(order_, direction, basis);
+            for (const std::vector<float>& colour : environment.rgb)
+                for (int l = 0; l < order_; ++l) {
+                    double sum = 0;
+                    for (int i = shIndex(l, -l); i <= shIndex(l, l); ++i)
+                        sum += double(colour[size_t(i)]) * double(basis[size_t(i)]);
+                    values_.push_back(sum);
+                }
+        }
+    }
+    /// Whether any colour is below 0 anywhere.
+    bool negative(std::span<const double> factors) const {
+        for (size_t row = 0; row < values_.size(); row += size_t(order_)) {
+            double sum = 0;
+            for (size_t l = 0; l < size_t(order_); ++l) sum += factors[l] * values_[row + l];
+            if (sum < 0) return true;
+        }
+        return false;
+    }
+
+  private:
+    static constexpr int kDirectionsPerCoefficient = 16;
+    int order_;
+    std::vector<double> values_;  // [directions][colours][bands]
+};
+
+std::array<double, kMaxShOrder> windowFactors(ShWindow window, double strength, int order) {
+    std::array<double, kMaxShOrder> factors{};
+    for (int l = 0; l < order; ++l) factors[size_t(l)] = shWindowFactor(window, widthOf(strength), l);
+    return factors;
+}
+
 }  // namespace
 
 double shWindowFactor(ShWindow window, double width, int band) {
@@ -167,29 +230,17 @@ double shLowerBound(std::span<const float> coefficients) {
 ConservativeWindow findConservativeWindow(std::span<const float> coefficients, ShWindow window) {
     Bound bound(coefficients);
     if (bound.mean() < 0) return {1, false};
-    std::array<double, kMaxShOrder> factors;
-    const auto negative = [&](double strength) {
-        for (int l = 0; l < bound.order(); ++l)
-            factors[size_t(l)] = shWindowFactor(window, widthOf(strength), l);
-        return bound.minimum(factors) < 0;
-    };
-    if (!negative(0)) return {widthOf(0), true};
-    // The bound rises with the strength but for small waves: the first step that suffices, then bisection.
-    const double full = fullStrength(window);
-    double weak = 0, strong = full;
-    for (int step = 1; step < kStrengthSteps; ++step) {
-        const double strength = full * step / kStrengthSteps;
-        if (!negative(strength)) {
-            strong = strength;
-            break;
-        }
-        weak = strength;
-    }
-    for (int step = 0; step < kBisections; ++step) {
-        const double middle = 0.5 * (weak + strong);
-        (negative(middle) ? weak : strong) = middle;
-    }
-    return {widthOf(strong), true};
+    const double width = widestWidth(window, [&](double strength) {
+        return bound.minimum(windowFactors(window, strength, bound.order())) < 0;
+    });
+    return {width, true};
+}
+
+double findNonNegativeWindow(const EnvironmentSh& environment, ShWindow window) {
+    const BandValues values(environment);
+    return widestWidth(window, [&](double strength) {
+        return values.negative(windowFactors(window, strength, environment.shOrder));
+    });
 }
 
 ConservativeWindow findConservativeWindow(const EnvironmentSh& environment, ShWindow window) {

@@ -42,6 +42,11 @@ struct ConservativeWindow {
 /// @source [Sloan2017]: one-dimensional minimisation over z, bisection over the width
 ConservativeWindow findConservativeWindow(std::span<const float> coefficients,
                                           ShWindow window = ShWindow::Lanczos);
+/// The widest window for which no colour is negative in any of 16 n² directions spread over the sphere. Wider
+/// than the conservative one, whose bound takes every |m| at its lowest at once: at 17 bands that bound
+/// leaves hardly more than the mean of a light with a sun.
+/// @return width in bands; infinity: none is needed; 1 (Gaussian 1/4) where the mean is negative
+double findNonNegativeWindow(const EnvironmentSh& environment, ShWindow window = ShWindow::Lanczos);
 /// One window for the three colours, so that they keep their ratios: the strongest that any of them needs.
 ConservativeWindow findConservativeWindow(const EnvironmentSh& environment,
                                           ShWindow window = ShWindow::Lanczos);

@@ -137,6 +137,31 @@ TEST(ShLowerBound, IsBelowEveryValueAndExactForZonalFunctions) {
     }
 }
 
+TEST(NonNegativeShWindow, IsTheWidestThatLeavesNothingNegative) {
+    const std::vector<Vec3f> directions = sphericalFibonacci(16 * shCount(8));
+    test::RandomInput random(23);
+    for (const ShWindow window : kWindows)
+        for (const int count : {1, 2, 5}) {
+            EnvironmentSh light{8,
+                                {lights(8, count, random), lights(8, count, random), lights(8, 40, random)}};
+            const double width = findNonNegativeWindow(light, window);
+            EXPECT_GE(width, 0.999 * findConservativeWindow(light, window).width);
+            ASSERT_LT(width, kInfinity);
+            const auto lowest = [&](double w) {
+                EnvironmentSh windowed = light;
+                applyShWindow(window, w, windowed);
+                double least = kInfinity;
+                for (const std::vector<float>& colour : windowed.rgb)
+                    least = std::min(least, lowestValue(colour, directions));
+                return least;
+            };
+            const double rounding = 1e-5 * length(light.rgb[0]);
+            EXPECT_GE(lowest(width), -rounding);
+            EXPECT_LT(lowest(1.02 * width), -rounding);
+        }
+    EXPECT_EQ(findNonNegativeWindow({1, {std::vector<float>{1}, {1}, {0}}}), kInfinity);
+}
+
 TEST(ConservativeShWindow, SpecialCases) {
     const std::vector<float> constant = {1, 0, 0, 0, 0, 0, 0, 0, 0}, black(9, 0.0f);
     EXPECT_EQ(findConservativeWindow(constant).width, kInfinity);
