@@ -45,7 +45,7 @@ TEST_F(Jobs, TripleProductTablesFollowTheBasisOfTheBundle) {
     writeBundle(testVisibility(4, 7));
     runCompress({bundle_, 6});
     const std::vector<TabulateRow> rows =
-        runTabulate({bundle_, {"sky:clear", "sky:overcast"}, "triple-product", "cube", 5});
+        runTabulate({bundle_, {"sky:clear", "sky:overcast"}, "triple-product", {"cube", 5}});
     ASSERT_EQ(rows.size(), 2u);
     const PcaMap pca = readPcaFile(bundle_ + "/pca.exr");
     const Environment sky = loadEnvironment("sky:clear");
