@@ -105,9 +105,7 @@ struct TargetEnvironments {
     explicit TargetEnvironments(const CompressSettings& settings) {
         if (settings.targetError == 0) return;
         std::vector<std::string> sources = settings.environments;
-        if (sources.empty())
-            for (const char* sky : {"sky:clear", "sky:overcast", "sky:sunset", "sky:uniform"})
-                sources.emplace_back(sky);
+        if (sources.empty()) sources = builtInEnvironments();
         for (const std::string& source : sources) {
             loaded.push_back(loadEnvironment(source, settings.environmentOptions));
             names.push_back(loaded.back().name);

@@ -64,6 +64,7 @@ void runTabulateCommand(int argc, char** argv) {
     line.choice("--kind", settings.kind, {"triple-product", "light-cosine"},
                 "light x cosine x component (needs prt compress), or light x cosine");
     addTableOptions(line, "--", settings.table);
+    addSunOption(line, settings.table);
     addEnvironmentOptions(line, settings.environmentOptions);
     line.flag("--force", settings.force, "also tables that the bundle has just so already");
     if (!line.parse(argc, argv)) return;

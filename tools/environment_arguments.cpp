@@ -17,8 +17,8 @@ void addEnvironmentOptions(CommandLine& line, EnvironmentOptions& options) {
 
 std::vector<Environment> loadEnvironmentsOrSkies(std::vector<std::string> sources, bool withUniform) {
     if (sources.empty())
-        for (const std::string& sky : proceduralSkyNames())
-            if (withUniform || sky != "uniform") sources.push_back("sky:" + sky);
+        for (const std::string& sky : builtInEnvironments())
+            if (withUniform || sky != "sky:uniform") sources.push_back(sky);
     std::vector<Environment> environments;
     for (const std::string& source : sources) environments.push_back(loadEnvironment(source));
     return environments;

@@ -14,6 +14,9 @@ void addTableOptions(CommandLine& line, const std::string& prefix, TableOptions&
     line.text("--window", options.window, "NAME[:WIDTH]",
               "smooths the light against ringing: none, hanning, lanczos, gaussian; as wide as the light has "
               "bands, or a width in bands, or auto: the widest that leaves it nowhere negative");
+}
+
+void addSunOption(CommandLine& line, TableOptions& options) {
     line.flag("--extract-sun", options.extractSun,
               "the sun of an environment becomes a light of its own, with sharp shadows");
 }

@@ -8,8 +8,11 @@
 
 namespace prt::tools {
 
-/// Adds PREFIXlayout, PREFIXsize, PREFIXvariant, --window and --extract-sun.
+/// Adds PREFIXlayout, PREFIXsize, PREFIXvariant and --window.
 /// @param prefix  "--", or "--table-" where the plain names mean something else
 void addTableOptions(CommandLine& line, const std::string& prefix, TableOptions& options);
+
+/// Adds --extract-sun.
+void addSunOption(CommandLine& line, TableOptions& options);
 
 }  // namespace prt::tools

@@ -181,6 +181,11 @@ std::string environmentFileStem(const std::string& environmentName) {
     return stem;
 }
 
+const std::vector<std::string>& builtInEnvironments() {
+    static const std::vector<std::string> names = {"sky:clear", "sky:overcast", "sky:sunset", "sky:uniform"};
+    return names;
+}
+
 double brightestFluxShare(const LatLongView& image, double solidAngleFraction) {
     PRT_CHECK_EQ(image.rgb.size(), size_t(image.width) * size_t(image.height) * 3);
     struct Texel {

@@ -42,6 +42,10 @@ Environment loadEnvironment(const std::string& pathOrSky, const EnvironmentOptio
 /// An environment's name as part of a file's: characters outside [A-Za-z0-9_-] become '_'.
 std::string environmentFileStem(const std::string& environmentName);
 
+/// Environments that measurements and targets of error take where none is named: "sky:clear",
+/// "sky:overcast", "sky:sunset", "sky:uniform".
+const std::vector<std::string>& builtInEnvironments();
+
 /// Names that loadEnvironment knows behind "sky:".
 const std::vector<std::string>& proceduralSkyNames();
 

@@ -330,6 +330,27 @@ TEST(BadInput, MeasureOptions) {
         expectRefused(folder, {"measure", name, "box.obj", "--frobnicate"}, kUsage, {"--frobnicate"});
         expectRefused(folder, {"measure", name, "absent.obj", "--quiet"}, kInput, {"absent.obj"});
     }
+    for (const std::string name : {"compression", "error"}) {
+        expectRefused(folder, {"measure", name, "box.prt", "--frobnicate"}, kUsage, {"--frobnicate"});
+        expectRefused(folder, {"measure", name, "absent.prt", "--quiet"}, kInput, {"absent.prt"});
+        expectRefused(folder, {"measure", name}, kUsage, {"prt measure " + name, "BUNDLE"});
+        expectRefused(folder, {"measure", name, "box.prt", "--points", "-1"}, kUsage, {"--points"});
+        expectRefused(folder, {"measure", name, "box.prt", "--weights", "bc7"}, kUsage, {"--weights"});
+    }
+    for (const std::string command : {"tabulate", "relight"}) {
+        const std::string prefix = command == "relight" ? "--table-" : "--";
+        const std::string environment = command == "relight" ? "--quiet" : "sky:clear";
+        expectRefused(folder, {command, "box.prt", environment, prefix + "layout", "sphere"}, kUsage,
+                      {"layout"});
+        expectRefused(folder, {command, "box.prt", environment, prefix + "variant", "best"}, kUsage,
+                      {"variant"});
+        expectRefused(folder, {command, "box.prt", environment, prefix + "size", "0"}, kUsage, {"size"});
+        expectRefused(folder, {command, "box.prt", environment, "--window", "box"}, kUsage, {"--window"});
+        expectRefused(
+            folder,
+            {command, "box.prt", environment, prefix + "layout", "dual-paraboloid", prefix + "size", "1"},
+            kUsage, {prefix + "size"});
+    }
     expectRefused(folder, {"measure", "projection"}, kUsage, {"prt measure projection", "MESH"});
     expectRefused(folder, {"measure", "weight"}, kUsage, {"weight", "prt measure --help"});
 }

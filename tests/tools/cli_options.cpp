@@ -8,8 +8,9 @@ namespace {
 
 const std::vector<std::string> kCommands = {"precompute", "compress", "tabulate",
                                             "relight",    "export",   "info"};
-const std::vector<std::string> kMeasurements = {"bake",       "basis",    "parameterization", "product",
-                                                "projection", "rotation", "sampling",         "tables"};
+const std::vector<std::string> kMeasurements = {
+    "bake",    "basis",      "compression", "error",    "parameterization",
+    "product", "projection", "rotation",    "sampling", "tables"};
 
 TEST(Options, NoArgumentsPrintsUsageAndFails) {
     Folder folder;
