@@ -70,6 +70,7 @@ void RelightArguments::addTo(CommandLine& line) {
     line.flag("--no-normal-map", noNormalMap, "shade with the mesh's own normals");
     line.flag("--no-background", noBackground, "black where nothing is seen");
     addTableOptions(line, "--table-", tables);
+    addSunOption(line, tables);
     line.flag("--compare-reference", compareReference,
               "print the error of every technique against ray tracing");
     line.flag("--each", each,
