@@ -9,31 +9,13 @@
 #include "precompute/base/parallel.h"
 #include "runtime/reference/reference.h"
 #include "tests/rays/shapes.h"
+#include "tests/reference/reference_scenes.h"
 
 namespace prt {
 namespace {
 
 using shapes::Mesh;
 constexpr double kPi = std::numbers::pi;
-
-Environment uniformSky(float radiance = 1) {
-    Environment environment;
-    environment.image = {16, 8, 3, std::vector<float>(16 * 8 * 3, radiance)};
-    return environment;
-}
-
-// Points in one row of pixels.
-SurfaceImage surfaceOf(const std::vector<Vec3f>& positions, const Vec3f& normal, uint32_t triangle = 0) {
-    SurfaceImage surface;
-    surface.width = int(positions.size());
-    surface.height = 1;
-    surface.position = positions;
-    surface.triangle.assign(positions.size(), triangle);
-    surface.geometricNormal.assign(positions.size(), normal);
-    surface.shadingNormal = surface.geometricNormal;
-    surface.albedo.assign(positions.size(), Vec3f(1, 1, 1));
-    return surface;
-}
 
 std::vector<float> irradiance(const Mesh& mesh, const SurfaceImage& surface, int baseCount = 4096,
                               const Environment& environment = uniformSky()) {
@@ -128,22 +110,6 @@ TEST(Reference, SmallSun) {
     EXPECT_NEAR(e[7], 1000 * sr * std::sin(latitude), 1e-3 * 1000 * sr);
     EXPECT_EQ(e[3], 0.0f);
     EXPECT_EQ(e[5], 0.0f);
-}
-
-Mesh clutter() {
-    Mesh mesh = shapes::floorSquare(3);
-    mesh.add(shapes::box({-0.5f, 0, -0.5f}, {0.5f, 1.2f, 0.5f}));
-    mesh.add(shapes::sphere(0.5, {1.2, 0.7, 0.1}, 3));
-    return mesh;
-}
-
-Scene sceneOf(const Mesh& mesh) {
-    Scene scene;
-    scene.positions = mesh.positions;
-    scene.indices = mesh.indices;
-    scene.materials.emplace_back();
-    scene.primitives = {{0, uint32_t(mesh.positions.size()), 0, uint32_t(mesh.indices.size()), 0}};
-    return scene;
 }
 
 // One pass over several environments gives what one pass each gives, the visitor sees what was summed, and
