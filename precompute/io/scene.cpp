@@ -89,6 +89,16 @@ void checkPrimitives(const Scene& scene, const std::string& where) {
 
 }  // namespace
 
+std::vector<uint8_t> doubleSidedTriangles(const Scene& scene) {
+    std::vector<uint8_t> result(scene.triangleCount(), 0);
+    for (const ScenePrimitive& primitive : scene.primitives) {
+        if (primitive.material < 0 || size_t(primitive.material) >= scene.materials.size()) continue;
+        if (!scene.materials[size_t(primitive.material)].doubleSided) continue;
+        std::fill_n(result.begin() + primitive.firstIndex / 3, primitive.indexCount / 3, uint8_t(1));
+    }
+    return result;
+}
+
 Bounds sceneBounds(const Scene& scene) {
     if (scene.positions.empty()) return {Vec3f::Zero(), Vec3f::Zero()};
     Bounds bounds{scene.positions[0], scene.positions[0]};

@@ -50,6 +50,9 @@ struct Scene {
     size_t triangleCount() const { return indices.size() / 3; }
 };
 
+/// [triangles] 1 for those of a material that is shown from both sides.
+std::vector<uint8_t> doubleSidedTriangles(const Scene& scene);
+
 /// Smallest axis-aligned box around all positions.
 struct Bounds {
     Vec3f low, high;

@@ -90,16 +90,6 @@ void prepareAtlas(const PrecomputeSettings& settings, bool fileHasAtlas, Scene& 
                         report.atlas.charts, 100 * report.atlas.utilisation, report.atlas.texelsPerUnit));
 }
 
-std::vector<uint8_t> doubleSidedTriangles(const Scene& scene) {
-    std::vector<uint8_t> result(scene.triangleCount(), 0);
-    for (const ScenePrimitive& primitive : scene.primitives) {
-        if (primitive.material < 0 || size_t(primitive.material) >= scene.materials.size()) continue;
-        if (!scene.materials[size_t(primitive.material)].doubleSided) continue;
-        std::fill_n(result.begin() + primitive.firstIndex / 3, primitive.indexCount / 3, uint8_t(1));
-    }
-    return result;
-}
-
 struct Baked {
     VisibilityMap map;
     BakeResult result;

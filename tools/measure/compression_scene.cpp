@@ -35,15 +35,6 @@ Number attribute(const VisibilityMap& map, const std::string& name, Number other
     return error == std::errc() && end == text.data() + text.size() ? value : otherwise;
 }
 
-std::vector<uint8_t> doubleSidedTriangles(const Scene& scene) {
-    std::vector<uint8_t> result(scene.triangleCount(), 0);
-    for (const ScenePrimitive& primitive : scene.primitives)
-        if (primitive.material >= 0 && size_t(primitive.material) < scene.materials.size() &&
-            scene.materials[size_t(primitive.material)].doubleSided)
-            std::fill_n(result.begin() + primitive.firstIndex / 3, primitive.indexCount / 3, uint8_t(1));
-    return result;
-}
-
 VisibilityMap firstBands(const VisibilityMap& map, int shOrder) {
     VisibilityMap result = map;
     const size_t from = size_t(shCount(map.shOrder)), to = size_t(shCount(shOrder));

@@ -23,16 +23,6 @@ constexpr int kHiddenDirections = 64;
 // Share of points whose normal may differ from the file's: rounding of a rasteriser, no other mesh.
 constexpr double kOtherNormals = 0.01;
 
-std::vector<uint8_t> doubleSidedTriangles(const Scene& scene) {
-    std::vector<uint8_t> result(scene.triangleCount(), 0);
-    for (const ScenePrimitive& primitive : scene.primitives) {
-        if (primitive.material < 0 || size_t(primitive.material) >= scene.materials.size()) continue;
-        if (!scene.materials[size_t(primitive.material)].doubleSided) continue;
-        std::fill_n(result.begin() + primitive.firstIndex / 3, primitive.indexCount / 3, uint8_t(1));
-    }
-    return result;
-}
-
 bool lessByNormal(const Vec3f& a, const Vec3f& b) {
     return std::lexicographical_compare(a.data(), a.data() + 3, b.data(), b.data() + 3);
 }
