@@ -13,7 +13,6 @@
 #include "precompute/base/error.h"
 #include "precompute/base/log.h"
 #include "precompute/base/parallel.h"
-#include "precompute/math/directions.h"
 #include "precompute/math/split_mix.h"
 #include "runtime/reference/reference.h"
 
@@ -70,14 +69,16 @@ class LightCells {
     std::vector<double> probability_, upTo_;
 };
 
-// Direction with a density of cosine over π about a normal: uniform in the disk, projected upwards.
+// Direction with a density of cosine over π about a normal: towards a point that is uniform on the unit
+// sphere which touches the surface there: a piece dA of it, at the distance 2cosθ and seen at the angle θ,
+// fills dω = dA cosθ / (2cosθ)², so that dA/4π = cosθ dω/π.
 Vec3f cosineDirection(const Vec3f& normal, double u1, double u2) {
-    const Frame frame = frameAround(normal);
-    const double radius = std::sqrt(u1), angle = 2 * std::numbers::pi * u2;
-    const Vec3d direction = radius * std::cos(angle) * frame.tangent.cast<double>() +
-                            radius * std::sin(angle) * frame.bitangent.cast<double>() +
-                            std::sqrt(std::max(0.0, 1 - u1)) * normal.cast<double>();
-    return direction.normalized().cast<float>();
+    const double height = 1 - 2 * u1, radius = std::sqrt(std::max(0.0, 1 - height * height));
+    const double angle = 2 * std::numbers::pi * u2;
+    const Vec3d chord =
+        normal.cast<double>() + Vec3d(radius * std::sin(angle), height, radius * std::cos(angle));
+    // Opposite to the normal the chord vanishes.
+    return chord.norm() > 1e-6 ? Vec3f(chord.normalized().cast<float>()) : normal;
 }
 
 struct Path {
