@@ -21,6 +21,7 @@
 #include "precompute/io/dds.h"
 #include "precompute/io/ktx2.h"
 #include "precompute/io/projection_attributes.h"
+#include "precompute/io/sun_shadow_file.h"
 #include "precompute/math/sphere_map.h"
 
 namespace prt {
@@ -33,6 +34,7 @@ constexpr const char* kVisibility = "visibility.exr";
 constexpr const char* kPca = "pca.exr";
 constexpr const char* kTableFolder = "tables/";
 constexpr const char* kCubeEnding = ".cube.exr";
+constexpr const char* kSunEnding = ".sun.exr";
 constexpr int kFormatVersion = 1;
 constexpr size_t kErrorPoints = 4096;
 
@@ -62,7 +64,7 @@ struct Source {
     std::string name;
     VisibilityMap visibility;
     std::optional<PcaMap> pca;
-    std::vector<std::string> tables;  ///< names of files of the bundle
+    std::vector<std::string> tables, suns;  ///< names of files of the bundle
     bool hasVisibilityTables = false;
     std::vector<uint8_t> used;   ///< [count] whatever a lookup may reach
     std::vector<uint8_t> valid;  ///< [count]
@@ -75,6 +77,11 @@ Source readSource(const Bundle& bundle, const ExportSettings& settings, ExportRe
     if (bundle.find(kPca)) bundle.require(kPca, fmt::format("prt compress {}", settings.bundlePath));
     for (const BundleFile& file : bundle.files()) {
         if (!file.name.starts_with(kTableFolder)) continue;
+        if (file.name.ends_with(kSunEnding)) {
+            bundle.require(file.name, file.madeBy);
+            source.suns.push_back(file.name);
+            continue;
+        }
         if (!file.name.ends_with(kCubeEnding)) {
             report.notExported.push_back(file.name);
             logWarning(fmt::format("{} is no table in a cube and is not exported", file.name));
@@ -123,7 +130,7 @@ class TextureFolder {
         report_.rows.push_back({part, file, format, image.layers, bytes, double(bytes) / gridTexels_});
         report_.bytes += bytes;
         report_.bytesPerTexel += double(bytes) / gridTexels_;
-        if (part != "table") report_.bytesPerPointTexel += double(bytes) / gridTexels_;
+        if (part != "table" && part != "sun") report_.bytesPerPointTexel += double(bytes) / gridTexels_;
         return {{"file", file},           {"format", format},       {"width", image.width},
                 {"height", image.height}, {"layers", image.layers}, {"bytes", bytes}};
     }
@@ -242,12 +249,32 @@ json validityJson(json description) {
     return description;
 }
 
-TextureImage validityTexture(const VisibilityMap& map) {
-    TextureImage image{TexelFormat::R8Unorm, map.grid.width, map.grid.height, 0, false, {}};
+// One byte of every point.
+template <class Value, class ToByte>
+TextureImage byteTexture(const PointGrid& grid, const std::vector<Value>& values, const ToByte& toByte) {
+    TextureImage image{TexelFormat::R8Unorm, grid.width, grid.height, 0, false, {}};
     image.bytes.resize(textureBytes(image));
-    std::transform(map.validity.begin(), map.validity.end(), image.bytes.begin(),
-                   [](Validity validity) { return uint8_t(validity); });
+    std::transform(values.begin(), values.end(), image.bytes.begin(), toByte);
     return image;
+}
+
+TextureImage validityTexture(const VisibilityMap& map) {
+    return byteTexture(map.grid, map.validity, [](Validity validity) { return uint8_t(validity); });
+}
+
+json exportSun(const Bundle& bundle, const std::string& name, TextureFolder& folder) {
+    const SunShadowMap sun = readSunShadowFile(bundle.pathOf(name).string());
+    const std::string file = name.substr(std::string(kTableFolder).size());
+    json text = folder.write("sun", file.substr(0, file.size() - std::string(".exr").size()),
+                             byteTexture(sun.grid, sun.shadow, [](float share) {
+                                 return uint8_t(std::lround(255 * std::clamp(share, 0.0f, 1.0f)));
+                             }));
+    text["meaning"] = "share of the sun's disc that the point sees";
+    text["direction"] = {sun.direction.x(), sun.direction.y(), sun.direction.z()};
+    text["irradiance"] = sun.irradiance;
+    text["angular_radius_rad"] = sun.angularRadiusRad;
+    text["attributes"] = sun.attributes;
+    return text;
 }
 
 json rowsOf(const std::vector<float>& values, size_t columns) {
@@ -374,6 +401,9 @@ ExportReport runExport(const ExportSettings& settings) {
         text["tables"].push_back(
             exportTable(bundle, name, settings, source, weights, visibility, folder, shader, report));
     giveAllTablesRanges(text["tables"], shader);
+    text["suns"] = json::array();
+    for (const std::string& name : source.suns) text["suns"].push_back(exportSun(bundle, name, folder));
+    shader.hasSuns = !source.suns.empty();
     folder.writeText("prt_shade.glsl", glslSnippet(shader));
     folder.writeText("prt_shade.hlsl", hlslSnippet(shader));
     folder.writeText(source.name + ".json", text.dump(1) + "\n");

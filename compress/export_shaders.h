@@ -19,6 +19,7 @@ struct ShaderSettings {
     bool isRgbPerLayer = false;                                 ///< packing of the tables
     bool hasWeightTables = false, hasVisibilityTables = false;  ///< triple products, light × cosine
     bool hasWeightTableRanges = false, hasVisibilityTableRanges = false;
+    bool hasSuns = false;  ///< extracted from the light of tables
 };
 
 /// Functions for GLSL 4.00 or later, and for HLSL (shader model 4.1 or later), equal to the project's own

@@ -193,6 +193,26 @@ TEST_F(Export, WithoutCompressionVisibilityIsExported) {
     EXPECT_EQ(runExport(none).rows.size(), 1u);
 }
 
+TEST_F(Export, SunsComeWithTheirShadows) {
+    writeBundle(bakedVisibility(kAtlas, 3), 4);
+    const SunShadowMap sun = addSun(kAtlas);
+    const ExportReport report = runExport(settings());
+    EXPECT_EQ(report.notExported.size(), 0u);
+    EXPECT_EQ(report.bytesPerPointTexel, 1 + 4);
+    const json text = description();
+    ASSERT_EQ(text["suns"].size(), 1u);
+    EXPECT_EQ(text["suns"][0]["file"], "noon.sun.ktx2");
+    EXPECT_EQ(text["suns"][0]["attributes"]["environmentName"], "noon");
+    for (size_t k = 0; k < 3; ++k) {
+        EXPECT_EQ(text["suns"][0]["direction"][k].get<float>(), sun.direction[int(k)]);
+        EXPECT_EQ(text["suns"][0]["irradiance"][k].get<float>(), sun.irradiance[k]);
+    }
+    const TextureImage image = readKtx2(out() / "noon.sun.ktx2");
+    ASSERT_EQ(image.bytes.size(), kAtlas.count);
+    for (size_t i = 0; i < kAtlas.count; ++i) EXPECT_EQ(int(image.bytes[i]), int(i % 256));
+    EXPECT_THAT(readFile(out() / "prt_shade.hlsl"), testing::HasSubstr("float3 prtSunIrradiance("));
+}
+
 TEST_F(Export, PerVertexFollowsTheGridOfTheFile) {
     writeBundle(bakedVisibility(vertexGrid(1500), 3), 4);
     const ExportReport report = runExport(settings());

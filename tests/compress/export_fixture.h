@@ -11,6 +11,7 @@
 #include "compress/tabulate_job.h"
 #include "precompute/base/atomic_file.h"
 #include "precompute/io/bundle.h"
+#include "precompute/io/sun_shadow_file.h"
 #include "tests/base/temporary_directory.h"
 #include "tests/io/small_maps.h"
 
@@ -51,6 +52,21 @@ class Export : public testing::Test {
         settings.bundlePath = bundle();
         settings.components = components;
         runCompress(settings);
+    }
+    // A sun with shadows of its own beside the tables.
+    SunShadowMap addSun(const PointGrid& grid) const {
+        SunShadowMap sun;
+        sun.grid = grid;
+        sun.direction = Vec3f(0.6f, 0.8f, 0);
+        sun.angularRadiusRad = 0.01f;
+        sun.irradiance = {3, 2.5f, 1};
+        for (size_t i = 0; i < grid.count; ++i) sun.shadow.push_back(float(i % 256) / 255);
+        sun.attributes = {{"environmentName", "noon"}};
+        BundleTransaction transaction(bundle(), false);
+        writeSunShadowFile(transaction.stage(sunShadowFileName("noon"), {}, "prt tabulate noon").string(),
+                           sun);
+        transaction.commit();
+        return sun;
     }
     void tabulate(const std::string& kind) const {
         TabulateSettings settings;

@@ -132,7 +132,13 @@ std::string fragmentShader(const std::string& snippet, const std::string& name, 
            "    vec4 k[" +
            layers + "];\n    for (int i = 0; i < " + layers + "; ++i) k[i] = prt" + name + "(points, " +
            (isPerVertex ? "int(place.x)" : "place.xy") + ", i);\n    result = vec4(prt" + name +
-           "Irradiance(k, tables, texelFetch(normals, pixel, 0).xyz), 1.0);\n}\n";
+           "Irradiance(k, tables, texelFetch(normals, pixel, 0).xyz)" +
+           (snippet.find("prtSunIrradiance") == std::string::npos
+                ? ""
+                : " + prtSunIrradiance(0.5, vec3(3.0, 2.5, 1.0), vec3(0.6, 0.8, 0.0), texelFetch(normals, "
+                  "pixel, "
+                  "0).xyz)") +
+           ", 1.0);\n}\n";
 }
 
 class ExportedGlsl : public Export {
@@ -206,6 +212,9 @@ class ExportedGlsl : public Export {
                     for (size_t m = 0; m < perPoint; ++m)
                         expected +=
                             double(values.decoded[points.texel[i] * perPoint + m]) * double(functions[m]);
+                    if (!text["suns"].empty())
+                        expected += 0.5 * std::array{3.0, 2.5, 1.0}[c] *
+                                    std::max(0.0f, normal.normalized().dot(Vec3f(0.6f, 0.8f, 0)));
                     worst = std::max(worst, std::abs(expected - double(shaded[i * 4 + c])));
                     largest = std::max(largest, std::abs(expected));
                 }
@@ -220,6 +229,7 @@ TEST_F(ExportedGlsl, ShadesAsTheCpuDoesInEveryFormat) {
     writeBundle(bakedVisibility(kAtlas, 4), 7);
     tabulate("triple-product");
     tabulate("light-cosine");
+    addSun(kAtlas);
     const std::vector<std::pair<const char*, const char*>> formats = {
         {"unorm8", "half"}, {"unorm16", "rgb9e5"}, {"half", "r11f"}, {"float", "float"}};
     for (const auto& [weights, tables] : formats) {
