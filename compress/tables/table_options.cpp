@@ -91,9 +91,11 @@ std::string tableWords(const TableOptions& options) {
 double applyTableWindow(const TableOptions& options, EnvironmentSh& environment) {
     const std::optional<Window> window = parseWindow(options.window);
     if (!window) return 0;
+    // Variants that need fewer bands of the light get the same window.
+    const double all = environment.shOrder - options.cosineBands() + kTableCosineBands;
     const double width = window->width    ? *window->width
                          : window->isAuto ? findNonNegativeWindow(environment, window->kind)
-                                          : environment.shOrder;
+                                          : all;
     applyShWindow(window->kind, width, environment);
     return width;
 }

@@ -18,8 +18,8 @@ struct TableOptions {
     /// "exact": all bands of the cosine that matter (kTableCosineBands); "paper": its first three
     std::string variant = "exact";
     /// Of the light, against ringing: "none", or "hanning", "lanczos", "gaussian" (math/sh_window.h), each as
-    /// wide as the light has bands; "NAME:WIDTH" says how wide, in bands, "NAME:auto" the widest that leaves
-    /// the light nowhere negative
+    /// wide as the light of exact tables has bands; "NAME:WIDTH" says how wide, in bands, "NAME:auto" the
+    /// widest that leaves the light nowhere negative
     std::string window = "none";
     /// Takes the sun out of environments that have one: it becomes a light of its own with its own shadow
     bool extractSun = false;
