@@ -1,113 +1,84 @@
-// Sources: OSMesa's interface (GL/osmesa.h of Mesa 22.3), OpenGL 4.5 core profile, sections 20 (debug output)
-// and 2.3.1 (errors).
+// Sources: OpenGL 4.5 core profile, sections 2.3.1 (errors) and 2.3.2 (reset); the interfaces to the window
+// system are in gl_context_*.cpp.
 #include "runtime/gl_context.h"
 
-#include <GL/osmesa.h>
 #include <dlfcn.h>
+#include <fmt/format.h>
 
-#include <cstdint>
 #include <cstdio>
+#include <cstdlib>
+#include <string_view>
 #include <utility>
 
-#include "precompute/base/error.h"
+#include "precompute/base/check.h"
+#include "runtime/gl_backend.h"
+#include "runtime/gl_debug.h"
 #include "runtime/gl_functions.h"
-
-// OSMesa never frees some 300 bytes of each context, which LeakSanitizer finds; said here, every program that
-// draws is spared.
-#if defined(__has_feature)
-#if __has_feature(address_sanitizer)
-#define PRT_LEAK_SANITIZER
-#endif
-#endif
-#if defined(__SANITIZE_ADDRESS__)
-#define PRT_LEAK_SANITIZER
-#endif
-#ifdef PRT_LEAK_SANITIZER
-extern "C" {
-const char* __lsan_default_suppressions();
-const char* __lsan_default_suppressions() { return "leak:libOSMesa\n"; }
-// The checker guesses where libraries that were opened at run time keep their thread-local storage, and reads
-// wild addresses where glibc's bookkeeping is not what it expects.
-const char* __asan_default_options();
-const char* __asan_default_options() { return "intercept_tls_get_addr=0"; }
-const char* __lsan_default_options();
-const char* __lsan_default_options() { return "print_suppressions=0"; }  // stderr is for our own lines
-}
-#endif
 
 namespace prt {
 namespace {
 
-struct OsMesa {
-    decltype(&OSMesaCreateContextAttribs) createContextAttribs = nullptr;
-    decltype(&OSMesaDestroyContext) destroyContext = nullptr;
-    decltype(&OSMesaGetCurrentContext) getCurrentContext = nullptr;
-    decltype(&OSMesaMakeCurrent) makeCurrent = nullptr;
-    decltype(&OSMesaGetProcAddress) getProcAddress = nullptr;
-};
+// OSMesa and Mesa's EGL keep one note between them of which context a thread draws into, and EGL does not see
+// OSMesa change it: whoever is followed by the other kind is released first.
+thread_local const GlBackend* lastCurrent = nullptr;
 
-constexpr const char* kRemedy = "install libosmesa6 (apt-get install libosmesa6)";
-
-// RTLD_LOCAL keeps its OpenGL symbols away from any other OpenGL in the process. Never closed: LLVM inside
-// does not survive that.
-OsMesa openOsMesa() {
-    void* library = nullptr;
-    for (const char* name : {"libOSMesa.so.8", "libOSMesa.so.6", "libOSMesa.so"})
-        if ((library = ::dlopen(name, RTLD_NOW | RTLD_LOCAL))) break;
-    if (!library) {
-        const char* why = ::dlerror();
-        throw InputError(
-            "OpenGL", std::string("libOSMesa cannot be loaded: ") + (why ? why : "unknown reason"), kRemedy);
-    }
-    OsMesa mesa;
-    const auto resolve = [&]<typename F>(F& function, const char* name) {
-        function = reinterpret_cast<F>(::dlsym(library, name));
-        if (!function) throw InputError("OpenGL", std::string("libOSMesa has no function ") + name, kRemedy);
-    };
-    resolve(mesa.createContextAttribs, "OSMesaCreateContextAttribs");
-    resolve(mesa.destroyContext, "OSMesaDestroyContext");
-    resolve(mesa.getCurrentContext, "OSMesaGetCurrentContext");
-    resolve(mesa.makeCurrent, "OSMesaMakeCurrent");
-    resolve(mesa.getProcAddress, "OSMesaGetProcAddress");
-    return mesa;
+const char* text(const GlFunctions& gl, GLenum what) {
+    const auto* bytes = gl.GetString(what);
+    return bytes ? reinterpret_cast<const char*>(bytes) : "unknown";
 }
 
-const OsMesa& osMesa() {
-    static const OsMesa kMesa = openOsMesa();
-    return kMesa;
-}
-
-GlProc osMesaProc(const char* name) { return osMesa().getProcAddress(name); }
-
-// Exceptions must not pass through OpenGL's frames: the message is kept for check(). The compiler's warnings
-// are errors of high severity to some drivers, so that only the type tells.
-void APIENTRY keepMessage(GLenum, GLenum type, GLuint, GLenum, GLsizei, const GLchar* message,
-                          const void* user) {
-    auto& kept = *const_cast<std::string*>(static_cast<const std::string*>(user));
-    if (type != GL_DEBUG_TYPE_ERROR) return;
-    if (kept.size() < 500) kept += (kept.empty() ? "" : " | ") + std::string(message);
-}
-
-const char* errorName(GLenum error) {
-    switch (error) {
-        case GL_INVALID_ENUM:
-            return "invalid enum";
-        case GL_INVALID_VALUE:
-            return "invalid value";
-        case GL_INVALID_OPERATION:
-            return "invalid operation";
-        case GL_INVALID_FRAMEBUFFER_OPERATION:
-            return "invalid framebuffer operation";
-        case GL_OUT_OF_MEMORY:
-            return "out of memory";
-        default:
-            return "unknown error";
-    }
+// Before any other function is asked for: some interfaces answer any name.
+void checkVersion(const GlBackend& backend) {
+    const auto getString = reinterpret_cast<PFNGLGETSTRINGPROC>(backend.proc("glGetString"));
+    const auto* version = getString ? reinterpret_cast<const char*>(getString(GL_VERSION)) : nullptr;
+    if (!version)
+        throw InputError("OpenGL", "no context is current on this thread", "make one current first");
+    int major = 0, minor = 0;
+    if (std::sscanf(version, "%d.%d", &major, &minor) != 2 || major * 10 + minor < 45)
+        throw InputError("OpenGL",
+                         fmt::format("version {} of {} is too old", version,
+                                     reinterpret_cast<const char*>(getString(GL_RENDERER))),
+                         "OpenGL 4.5 is needed (Mesa 22.3 has it, as in Debian 12)");
 }
 
 }  // namespace
 
-GlFunctions loadGlFunctions(GlProc (*getProc)(const char* name)) {
+const char* glContextKindName(GlContextKind kind) {
+    switch (kind) {
+        case GlContextKind::OsMesa:
+            return "osmesa";
+        case GlContextKind::Egl:
+            return "egl";
+        case GlContextKind::Current:
+            break;
+    }
+    return "current";
+}
+
+void* openGlLibrary(const char* variable, std::initializer_list<const char*> names, const char* remedy) {
+    // RTLD_LOCAL keeps OpenGL's symbols away from any other OpenGL in the process. Never closed: LLVM inside
+    // does not survive that.
+    constexpr int kHow = RTLD_NOW | RTLD_LOCAL;
+    const char* named = std::getenv(variable);
+    const bool chosen = named && *named;
+    std::string first;
+    for (const char* name : names) {
+        if (void* library = ::dlopen(chosen ? named : name, kHow)) return library;
+        const char* why = ::dlerror();
+        if (first.empty()) first = why ? why : "unknown reason";
+        if (chosen) break;
+    }
+    throw InputError("OpenGL", fmt::format("{} cannot be loaded: {}", chosen ? named : *names.begin(), first),
+                     chosen ? fmt::format("correct {}, or leave it unset", variable) : std::string(remedy));
+}
+
+GlProc glLibrarySymbol(void* library, const char* libraryName, const char* name, const char* remedy) {
+    const auto symbol = reinterpret_cast<GlProc>(::dlsym(library, name));
+    if (!symbol) throw InputError("OpenGL", fmt::format("{} has no function {}", libraryName, name), remedy);
+    return symbol;
+}
+
+GlFunctions loadGlFunctions(const std::function<GlProc(const char* name)>& getProc) {
     GlFunctions gl;
     const char* missing = nullptr;
 #define PRT_GL_RESOLVE(type, name)                         \
@@ -122,61 +93,62 @@ GlFunctions loadGlFunctions(GlProc (*getProc)(const char* name)) {
 }
 
 struct GlContext::State {
-    OSMesaContext context = nullptr;
-    uint32_t pixel = 0;  // OSMesa insists on a buffer; frames are drawn into framebuffer objects
+    GlMessages messages;  // outlives the context, which may still speak while it goes
+    std::unique_ptr<GlBackend> backend;
     GlFunctions gl;
-    std::string message;
 
     ~State() {
-        if (!context) return;
-        if (osMesa().getCurrentContext() == context) osMesa().makeCurrent(nullptr, nullptr, 0, 0, 0);
-        osMesa().destroyContext(context);
+        if (lastCurrent == backend.get()) lastCurrent = nullptr;
     }
 };
 
-GlContext::GlContext() : state_(std::make_unique<State>()) {
-    const int attributes[] = {OSMESA_FORMAT,
-                              OSMESA_RGBA,
-                              OSMESA_PROFILE,
-                              OSMESA_CORE_PROFILE,
-                              OSMESA_CONTEXT_MAJOR_VERSION,
-                              4,
-                              OSMESA_CONTEXT_MINOR_VERSION,
-                              5,
-                              0,
-                              0};
-    state_->context = osMesa().createContextAttribs(attributes, nullptr);
-    if (!state_->context)
-        throw InputError("OpenGL", "libOSMesa makes no OpenGL 4.5 core context",
-                         "Mesa 22.3 or newer is needed, as in Debian 12");
+GlContext::GlContext(std::unique_ptr<State> state) : state_(std::move(state)) {
     makeCurrent();
-    state_->gl = loadGlFunctions(osMesaProc);
+    const GlBackend& backend = *state_->backend;
+    checkVersion(backend);
+    state_->gl = loadGlFunctions([&](const char* name) { return backend.proc(name); });
+}
 
-    // OSMesaGetProcAddress answers any name, so the version has to say what is really there.
-    const auto* version = reinterpret_cast<const char*>(gl().GetString(GL_VERSION));
-    int major = 0, minor = 0;
-    if (!version || std::sscanf(version, "%d.%d", &major, &minor) != 2 || major * 10 + minor < 45)
-        throw InputError("OpenGL", std::string("version ") + (version ? version : "unknown") + " is too old",
-                         "OpenGL 4.5 is needed (Mesa 22.3, as in Debian 12)");
-    gl().DebugMessageCallback(keepMessage, &state_->message);
-    gl().Enable(GL_DEBUG_OUTPUT);
-    gl().Enable(GL_DEBUG_OUTPUT_SYNCHRONOUS);
+GlContext::GlContext(GlContextKind kind)
+    : GlContext([kind] {
+          PRT_CHECK(kind != GlContextKind::Current);
+          auto state = std::make_unique<State>();
+          state->backend = kind == GlContextKind::Egl ? makeEglBackend(glDebugWanted()) : makeOsMesaBackend();
+          return state;
+      }()) {
+    state_->messages.listen(gl(), glDebugWanted());
     check("creating the context");
 }
 
+GlContext GlContext::ofCaller(GlGetProc getProc) {
+    auto state = std::make_unique<State>();
+    state->backend = makeCallerBackend(getProc);
+    return GlContext(std::move(state));
+}
+
 GlContext::~GlContext() = default;
+
+GlContextKind GlContext::kind() const { return state_->backend->kind(); }
 
 const GlFunctions& GlContext::gl() const { return state_->gl; }
 
 std::string GlContext::rendererName() const {
     makeCurrent();
-    return reinterpret_cast<const char*>(gl().GetString(GL_RENDERER));
+    return text(gl(), GL_RENDERER);
+}
+
+std::string GlContext::versionName() const {
+    makeCurrent();
+    return text(gl(), GL_VERSION);
 }
 
 void GlContext::makeCurrent() const {
-    if (osMesa().getCurrentContext() == state_->context) return;
-    if (!osMesa().makeCurrent(state_->context, &state_->pixel, GL_UNSIGNED_BYTE, 1, 1))
-        throw Error("OpenGL", "the context cannot be made current");
+    const GlBackend& wanted = *state_->backend;
+    if (wanted.kind() != GlContextKind::Current && lastCurrent && lastCurrent != &wanted &&
+        lastCurrent->kind() != wanted.kind() && lastCurrent->isCurrent())
+        lastCurrent->release();
+    if (!wanted.isCurrent()) wanted.makeCurrent();
+    lastCurrent = &wanted;
 }
 
 void GlContext::check(const std::string& doing) const {
@@ -187,12 +159,15 @@ void GlContext::check(const std::string& doing) const {
         if (error == GL_NO_ERROR) break;
         if (first == GL_NO_ERROR) first = error;
     }
-    const std::string message = std::exchange(state_->message, {});
+    const std::string message = state_->messages.take();
+    if (first == GL_CONTEXT_LOST || gl().GetGraphicsResetStatus() != GL_NO_ERROR)
+        throw GlContextLost("OpenGL", doing + ": the GPU was reset and the context is lost",
+                            "start again; if it happens again, use smaller images or another driver");
     if (first == GL_OUT_OF_MEMORY)
         throw InputError("OpenGL", doing + ": out of memory" + (message.empty() ? "" : ": " + message),
                          "use fewer texels, a lower order, smaller tables or a smaller image");
     if (first != GL_NO_ERROR)
-        throw Error("OpenGL", doing + ": " + errorName(first) + (message.empty() ? "" : ": " + message));
+        throw Error("OpenGL", doing + ": " + glErrorName(first) + (message.empty() ? "" : ": " + message));
     if (!message.empty()) throw Error("OpenGL", doing + ": " + message);
 }
 

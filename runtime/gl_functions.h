@@ -1,5 +1,5 @@
 // The OpenGL 4.5 functions that the runtime calls, filled through whatever resolves names for the context at
-// hand (OSMesa's here). Internal: no other header shows OpenGL types.
+// hand. Internal: no other header shows OpenGL types.
 #pragma once
 
 // osmesa.h and others bring gl.h, whose version macros would keep the prototypes away.
@@ -9,17 +9,25 @@
 #undef GL_VERSION_1_3
 #include <GL/glcorearb.h>
 
+#include <functional>
+
+#include "runtime/gl_context.h"
+
 // X(type in glcorearb.h, name without "gl")
 #define PRT_GL_FUNCTIONS(X)                                              \
+    X(PFNGLACTIVETEXTUREPROC, ActiveTexture)                             \
     X(PFNGLATTACHSHADERPROC, AttachShader)                               \
+    X(PFNGLBINDBUFFERPROC, BindBuffer)                                   \
     X(PFNGLBINDFRAMEBUFFERPROC, BindFramebuffer)                         \
     X(PFNGLBINDSAMPLERPROC, BindSampler)                                 \
+    X(PFNGLBINDTEXTUREPROC, BindTexture)                                 \
     X(PFNGLBINDTEXTUREUNITPROC, BindTextureUnit)                         \
     X(PFNGLBINDVERTEXARRAYPROC, BindVertexArray)                         \
     X(PFNGLCHECKNAMEDFRAMEBUFFERSTATUSPROC, CheckNamedFramebufferStatus) \
     X(PFNGLCLEARNAMEDFRAMEBUFFERFVPROC, ClearNamedFramebufferfv)         \
     X(PFNGLCLEARNAMEDFRAMEBUFFERUIVPROC, ClearNamedFramebufferuiv)       \
     X(PFNGLCLIPCONTROLPROC, ClipControl)                                 \
+    X(PFNGLCOLORMASKIPROC, ColorMaski)                                   \
     X(PFNGLCOMPILESHADERPROC, CompileShader)                             \
     X(PFNGLCREATEBUFFERSPROC, CreateBuffers)                             \
     X(PFNGLCREATEFRAMEBUFFERSPROC, CreateFramebuffers)                   \
@@ -28,6 +36,7 @@
     X(PFNGLCREATESHADERPROC, CreateShader)                               \
     X(PFNGLCREATETEXTURESPROC, CreateTextures)                           \
     X(PFNGLCREATEVERTEXARRAYSPROC, CreateVertexArrays)                   \
+    X(PFNGLCULLFACEPROC, CullFace)                                       \
     X(PFNGLDEBUGMESSAGECALLBACKPROC, DebugMessageCallback)               \
     X(PFNGLDELETEBUFFERSPROC, DeleteBuffers)                             \
     X(PFNGLDELETEFRAMEBUFFERSPROC, DeleteFramebuffers)                   \
@@ -38,13 +47,22 @@
     X(PFNGLDELETEVERTEXARRAYSPROC, DeleteVertexArrays)                   \
     X(PFNGLDEPTHFUNCPROC, DepthFunc)                                     \
     X(PFNGLDEPTHMASKPROC, DepthMask)                                     \
+    X(PFNGLDEPTHRANGEINDEXEDPROC, DepthRangeIndexed)                     \
     X(PFNGLDISABLEPROC, Disable)                                         \
+    X(PFNGLDISABLEIPROC, Disablei)                                       \
     X(PFNGLDRAWARRAYSPROC, DrawArrays)                                   \
     X(PFNGLENABLEPROC, Enable)                                           \
+    X(PFNGLENABLEIPROC, Enablei)                                         \
     X(PFNGLFINISHPROC, Finish)                                           \
+    X(PFNGLFRONTFACEPROC, FrontFace)                                     \
     X(PFNGLGENERATETEXTUREMIPMAPPROC, GenerateTextureMipmap)             \
+    X(PFNGLGETBOOLEANI_VPROC, GetBooleani_v)                             \
+    X(PFNGLGETBOOLEANVPROC, GetBooleanv)                                 \
+    X(PFNGLGETDOUBLEI_VPROC, GetDoublei_v)                               \
     X(PFNGLGETERRORPROC, GetError)                                       \
+    X(PFNGLGETFLOATI_VPROC, GetFloati_v)                                 \
     X(PFNGLGETFLOATVPROC, GetFloatv)                                     \
+    X(PFNGLGETGRAPHICSRESETSTATUSPROC, GetGraphicsResetStatus)           \
     X(PFNGLGETINTEGERVPROC, GetIntegerv)                                 \
     X(PFNGLGETPROGRAMINFOLOGPROC, GetProgramInfoLog)                     \
     X(PFNGLGETPROGRAMIVPROC, GetProgramiv)                               \
@@ -54,15 +72,20 @@
     X(PFNGLGETSTRINGIPROC, GetStringi)                                   \
     X(PFNGLGETTEXTUREIMAGEPROC, GetTextureImage)                         \
     X(PFNGLGETUNIFORMLOCATIONPROC, GetUniformLocation)                   \
+    X(PFNGLISENABLEDPROC, IsEnabled)                                     \
+    X(PFNGLISENABLEDIPROC, IsEnabledi)                                   \
     X(PFNGLLINKPROGRAMPROC, LinkProgram)                                 \
     X(PFNGLNAMEDBUFFERSTORAGEPROC, NamedBufferStorage)                   \
     X(PFNGLNAMEDFRAMEBUFFERDRAWBUFFERSPROC, NamedFramebufferDrawBuffers) \
     X(PFNGLNAMEDFRAMEBUFFERTEXTUREPROC, NamedFramebufferTexture)         \
+    X(PFNGLPIXELSTOREIPROC, PixelStorei)                                 \
+    X(PFNGLPOLYGONMODEPROC, PolygonMode)                                 \
     X(PFNGLPROGRAMUNIFORM1FPROC, ProgramUniform1f)                       \
     X(PFNGLPROGRAMUNIFORM1IPROC, ProgramUniform1i)                       \
     X(PFNGLPROGRAMUNIFORM2IPROC, ProgramUniform2i)                       \
     X(PFNGLPROGRAMUNIFORM3FVPROC, ProgramUniform3fv)                     \
     X(PFNGLPROGRAMUNIFORMMATRIX4FVPROC, ProgramUniformMatrix4fv)         \
+    X(PFNGLPROVOKINGVERTEXPROC, ProvokingVertex)                         \
     X(PFNGLSAMPLERPARAMETERFPROC, SamplerParameterf)                     \
     X(PFNGLSAMPLERPARAMETERIPROC, SamplerParameteri)                     \
     X(PFNGLSHADERSOURCEPROC, ShaderSource)                               \
@@ -73,7 +96,8 @@
     X(PFNGLTEXTURESUBIMAGE2DPROC, TextureSubImage2D)                     \
     X(PFNGLTEXTURESUBIMAGE3DPROC, TextureSubImage3D)                     \
     X(PFNGLUSEPROGRAMPROC, UseProgram)                                   \
-    X(PFNGLVIEWPORTPROC, Viewport)
+    X(PFNGLVIEWPORTPROC, Viewport)                                       \
+    X(PFNGLVIEWPORTINDEXEDFVPROC, ViewportIndexedfv)
 
 namespace prt {
 
@@ -84,10 +108,9 @@ struct GlFunctions {
 #undef PRT_GL_MEMBER
 };
 
-using GlProc = void (*)();
 /// Fills the table.
 /// @param getProc  resolves "glDrawArrays" and the like; null for a name it does not know
 /// @throws InputError  a name was not resolved
-GlFunctions loadGlFunctions(GlProc (*getProc)(const char* name));
+GlFunctions loadGlFunctions(const std::function<GlProc(const char* name)>& getProc);
 
 }  // namespace prt

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <atomic>
 #include <vector>
 
 #include "precompute/base/error.h"
@@ -10,6 +11,8 @@
 
 namespace prt {
 namespace {
+
+std::atomic<size_t> liveCount{0};
 
 GlObject compileShader(const GlFunctions& gl, GLenum stage, const std::string& name,
                        const std::string& defines) {
@@ -28,7 +31,26 @@ GlObject compileShader(const GlFunctions& gl, GLenum stage, const std::string& n
     return shader;
 }
 
+// A program that is in use lives on, and its shaders with it.
+void deleteProgram(const GlFunctions& gl, GLuint name) {
+    if (GLuint(glInteger(gl, GL_CURRENT_PROGRAM)) == name) gl.UseProgram(0);
+    gl.DeleteProgram(name);
+}
+
 }  // namespace
+
+size_t liveGlObjects() { return liveCount; }
+
+GlObject::GlObject(const GlFunctions& gl, GLuint name, Delete destroy)
+    : gl_(&gl), name_(name), delete_(destroy) {
+    if (name_) ++liveCount;
+}
+
+GlObject::~GlObject() {
+    if (!name_) return;
+    delete_(*gl_, name_);
+    --liveCount;
+}
 
 GlObject makeTexture(const GlFunctions& gl, GLenum target) {
     GLuint name = 0;
@@ -85,7 +107,7 @@ GlBufferTexture::GlBufferTexture(const GlFunctions& gl, GLenum internalFormat,
 
 GlProgram::GlProgram(const GlFunctions& gl, const std::string& vertex, const std::string& fragment,
                      const std::string& defines)
-    : gl_(&gl), program_(gl, gl.CreateProgram(), [](const GlFunctions& f, GLuint n) { f.DeleteProgram(n); }) {
+    : gl_(&gl), program_(gl, gl.CreateProgram(), deleteProgram) {
     const GlObject vertexShader = compileShader(gl, GL_VERTEX_SHADER, vertex, defines);
     const GlObject fragmentShader = compileShader(gl, GL_FRAGMENT_SHADER, fragment, defines);
     gl.AttachShader(program_.name(), vertexShader.name());

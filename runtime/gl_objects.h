@@ -13,21 +13,23 @@
 
 namespace prt {
 
+/// Objects of this process that were made and not yet deleted, in all contexts.
+size_t liveGlObjects();
+
 /// A name and the function that deletes it.
 class GlObject {
   public:
     using Delete = void (*)(const GlFunctions& gl, GLuint name);
     GlObject() = default;
-    GlObject(const GlFunctions& gl, GLuint name, Delete destroy) : gl_(&gl), name_(name), delete_(destroy) {}
+    /// Counts as live until destroyed.
+    GlObject(const GlFunctions& gl, GLuint name, Delete destroy);
     GlObject(GlObject&& other) noexcept { swap(other); }
     GlObject& operator=(GlObject&& other) noexcept {
         GlObject moved(std::move(other));
         swap(moved);
         return *this;
     }
-    ~GlObject() {
-        if (name_) delete_(*gl_, name_);
-    }
+    ~GlObject();
     GLuint name() const { return name_; }
     explicit operator bool() const { return name_ != 0; }
 
@@ -86,6 +88,10 @@ class GlProgram {
     }
     void set(const char* uniform, const Vec3f& value) const {
         gl_->ProgramUniform3fv(program_.name(), at(uniform), 1, value.data());
+    }
+    /// An array of them, from its first on.
+    void set(const char* uniform, std::span<const Vec3f> values) const {
+        gl_->ProgramUniform3fv(program_.name(), at(uniform), GLsizei(values.size()), values.data()->data());
     }
     void set(const char* uniform, const Mat4f& value) const {
         gl_->ProgramUniformMatrix4fv(program_.name(), at(uniform), 1, GL_FALSE, value.data());

@@ -12,5 +12,6 @@ find_package(PkgConfig REQUIRED)
 pkg_check_modules(xxhash REQUIRED IMPORTED_TARGET GLOBAL libxxhash)
 pkg_check_modules(stb REQUIRED IMPORTED_TARGET GLOBAL stb)
 pkg_check_modules(webp REQUIRED IMPORTED_TARGET GLOBAL libwebp)
+pkg_check_modules(egl REQUIRED egl)  # headers; the library itself is loaded at run time
 find_package(tinyobjloader REQUIRED)
 find_package(Spectra REQUIRED)
