@@ -189,6 +189,7 @@ class Relight {
           suns_(data_.bundle, data_.scene, data_.environments, tables_.rotationRad()),
           camera_(arguments.camera(sceneBounds(data_.scene))),
           options_{arguments.width, arguments.height, !arguments.noNormalMap},
+          context_(arguments.context.kind()),
           renderer_(context_, data_.scene, data_.visibility ? &*data_.visibility : nullptr,
                     data_.pca ? &*data_.pca : nullptr) {}
 
@@ -208,6 +209,7 @@ class Relight {
             .set("height", options_.height)
             .set("covered_pixels", uint64_t(covered_))
             .set("rotate_deg", arguments_.rotateDeg)
+            .set("context", glContextKindName(context_.kind()))
             .set("renderer", context_.rendererName());
         if (reference) report.set("reference_directions", uint64_t(directions_.direction.size()));
         if (!arguments_.each) {

@@ -81,6 +81,7 @@ void RelightArguments::addTo(CommandLine& line) {
               "with --compare-reference: the ray-traced image");
     line.text("--difference-output", differenceOutput, "FILE",
               "with --compare-reference: 4 x |image - reference|");
+    context.addTo(line);
     line.integer("--time-frames", timeFrames, 0, 10000, "measure the median time of so many frames");
 }
 

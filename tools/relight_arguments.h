@@ -9,6 +9,7 @@
 #include "precompute/io/environment_file.h"
 #include "precompute/io/scene.h"
 #include "precompute/io/surface_image.h"
+#include "tools/context_arguments.h"
 
 namespace prt::tools {
 
@@ -37,6 +38,7 @@ struct RelightArguments {
     std::vector<EnvironmentArgument> environments;
     EnvironmentOptions environmentOptions;
     TableOptions tables;
+    ContextArguments context;
     int width = 0, height = 0;
     std::optional<double> exposureStops;  ///< empty: chosen from the picture
 
