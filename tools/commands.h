@@ -7,6 +7,7 @@ namespace prt::tools {
 void runPrecomputeCommand(int argc, char** argv);
 void runCompressCommand(int argc, char** argv);
 void runTabulateCommand(int argc, char** argv);
+void runLightmapCommand(int argc, char** argv);
 void runExportCommand(int argc, char** argv);
 void runRelightCommand(int argc, char** argv);
 void runInfoCommand(int argc, char** argv);

@@ -27,6 +27,8 @@ constexpr Command kCommands[] = {
     {"compress", "principal components of the visibility of a bundle", prt::tools::runCompressCommand},
     {"tabulate", "tables of light x cosine, or light x cosine x component, for shipping with a bundle",
      prt::tools::runTabulateCommand},
+    {"lightmap", "light of one environment, with its bounces, at the points of a bundle",
+     prt::tools::runLightmapCommand},
     {"export", "textures (KTX2, DDS), description and shader source for an engine",
      prt::tools::runExportCommand},
     {"relight", "draws a bundle under blended, rotated environments; compares with ray-traced truth",
