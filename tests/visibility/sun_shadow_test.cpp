@@ -4,23 +4,13 @@
 #include <cmath>
 #include <numbers>
 
-#include "tests/rays/shapes.h"
+#include "tests/visibility/shape_scene.h"
 
 namespace prt {
 namespace {
 
 using shapes::Mesh;
 constexpr int kAtlas = 64;
-
-Scene sceneOf(const Mesh& mesh) {
-    Scene scene;
-    scene.positions = mesh.positions;
-    scene.indices = mesh.indices;
-    scene.normals.assign(mesh.positions.size(), Vec3f(0, 1, 0));
-    scene.materials.emplace_back();
-    scene.primitives = {{0, uint32_t(mesh.positions.size()), 0, uint32_t(mesh.indices.size()), 0}};
-    return scene;
-}
 
 // A floor over the texels [2, 62]² of the atlas, one unit a texel, from (0, 0, 0) to (60, 0, 60), and
 // something on or over it that takes no area of the atlas.

@@ -9,23 +9,13 @@
 #include "precompute/visibility/bake.h"
 #include "precompute/visibility/orientations.h"
 #include "precompute/visibility/trace_blocks.h"
-#include "tests/rays/shapes.h"
+#include "tests/visibility/shape_scene.h"
 
 namespace prt {
 namespace {
 
 using shapes::Mesh;
 constexpr int kAtlas = 64;
-
-Scene sceneOf(const Mesh& mesh) {
-    Scene scene;
-    scene.positions = mesh.positions;
-    scene.indices = mesh.indices;
-    scene.normals.assign(mesh.positions.size(), Vec3f(0, 1, 0));
-    scene.materials.emplace_back();
-    scene.primitives = {{0, uint32_t(mesh.positions.size()), 0, uint32_t(mesh.indices.size()), 0}};
-    return scene;
-}
 
 BakeResult bakeTexels(const Scene& scene, const TexelSurface& surface, int shOrder, int rays) {
     BakeOptions options;
