@@ -1,6 +1,6 @@
 // SH lightmaps [IwanickiSloan2012, Sec. 5]: radiosity [GoralEtAl1984] kept at the points of the surface and
 // gathered by rays [Heckbert1990]. Two sampling densities joined by the balance heuristic [VeachGuibas1995];
-// points of [Owen1995], shifted per item [CranleyPatterson1976].
+// nets of [Owen1995].
 #include "precompute/visibility/lightmap.h"
 
 #include <fmt/format.h>
@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <bit>
 #include <cmath>
 #include <numbers>
 #include <optional>
@@ -53,13 +54,37 @@ enum class Side { Front, Back };
 // A density over the hemisphere, half of it uniform and half cosine-weighted: p = (1 + 2h) / 4π, h the
 // cosine.
 double hemispherePdf(double height) { return (1 + 2 * height) / (4 * kPi); }
-Vec3d hemisphereDirection(const Frame& frame, double u1, double u2) {
-    // ∫ (1 + 2h)/2 dh = (h + h²)/2 = u
-    const double height = (std::sqrt(1 + 8 * u1) - 1) / 2;
-    const double radius = std::sqrt(std::max(0.0, 1 - height * height)), angle = 2 * kPi * u2;
-    return radius * std::cos(angle) * frame.tangent.cast<double>() +
-           radius * std::sin(angle) * frame.bitangent.cast<double>() + height * frame.normal.cast<double>();
-}
+
+// Directions that items take: kSampleSets sets, each of them a net, so that neighbours err differently and
+// none of it is computed anew for every item.
+class SampleSets {
+  public:
+    SampleSets(size_t rays, const EnvironmentSampler& light) : size_(std::bit_ceil(rays)) {
+        const int count = int(size_ * kSampleSets);
+        for (const auto& [u1, u2] : sobolOwenPoints(count, 1)) {
+            // ∫ (1 + 2h)/2 dh = (h + h²)/2 = u
+            const double height = (std::sqrt(1 + 8 * u1) - 1) / 2, angle = 2 * kPi * u2;
+            const double radius = std::sqrt(std::max(0.0, 1 - height * height));
+            hemisphere_.push_back(
+                Vec3d(radius * std::cos(angle), radius * std::sin(angle), height).cast<float>());
+        }
+        if (light.dark()) return;
+        for (const auto& [u1, u2] : sobolOwenPoints(count, 2)) towardsLight_.push_back(light.sample(u1, u2));
+    }
+    /// Any set.
+    static size_t choose(uint64_t seed) { return size_t(SplitMix64{seed}.next() % kSampleSets); }
+    /// Along the axes of a frame, the k-th of a set.
+    const Vec3f& hemisphere(size_t set, size_t k) const { return hemisphere_[set * size_ + k % size_]; }
+    const LightSample& towardsLight(size_t set, size_t k) const {
+        return towardsLight_[set * size_ + k % size_];
+    }
+
+  private:
+    static constexpr uint64_t kSampleSets = 32;
+    size_t size_;
+    std::vector<Vec3f> hemisphere_;
+    std::vector<LightSample> towardsLight_;
+};
 
 // Sums of one part of an item, over the rays of both densities.
 struct PartSum {
@@ -78,13 +103,13 @@ class Gatherer {
         const SurfaceAlbedo& albedo;
         const LightmapPoints& points;
         const EnvironmentSampler& light;
+        const SampleSets& samples;
         size_t rays = 0;
         uint64_t seed = 0;  // of the pass
         Side side = Side::Front;
         const LightField* field = nullptr;  // none: surfaces are black
         bool expand = false;
         const CosineTable* weight = nullptr;  // none: plain
-        std::span<const std::array<double, 2>> hemisphere, towardsLight;
     };
 
     explicit Gatherer(const Context& context) : c_(context), stream_(context.caster) {}
@@ -109,8 +134,7 @@ class Gatherer {
 
     void start(size_t item) {
         itemNormal_ = c_.points.normal(item) * (c_.side == Side::Back ? -1.0f : 1.0f);
-        SplitMix64 random{(c_.seed << 40) + item};
-        for (double& shift : shifts_) shift = random.uniform();
+        set_ = SampleSets::choose((c_.seed << 40) + item);
         sums_.clear();
         origins_.clear();
         normals_.clear();
@@ -127,16 +151,6 @@ class Gatherer {
         }
     }
 
-    std::array<double, 2> shifted(std::span<const std::array<double, 2>> set, size_t k,
-                                  size_t firstShift) const {
-        std::array<double, 2> u = set[k % set.size()];
-        for (size_t d = 0; d < 2; ++d) {
-            u[d] += shifts_[firstShift + d];
-            if (u[d] >= 1) u[d] -= 1;
-        }
-        return u;
-    }
-
     // Expected number of rays per steradian, of both densities, in a direction of a part.
     double density(const PartSum& sum, double height, float lightPdf) const {
         return double(sum.rays) * (hemispherePdf(height) + double(lightPdf));
@@ -150,9 +164,11 @@ class Gatherer {
         for (size_t p = 0; p < sums_.size(); ++p) {
             const Frame frame = frameAround(normals_[p]);
             for (size_t j = 0; j < sums_[p].rays; ++j, ++k) {
-                const std::array u = shifted(c_.hemisphere, k, 0);
+                const Vec3f& local = c_.samples.hemisphere(set_, k);
                 rayOrigins_.push_back(origins_[p]);
-                rayDirections_.push_back(hemisphereDirection(frame, u[0], u[1]).normalized().cast<float>());
+                rayDirections_.push_back(
+                    (local.x() * frame.tangent + local.y() * frame.bitangent + local.z() * frame.normal)
+                        .normalized());
                 rays_.push_back({p, j * 2 < sums_[p].rays ? size_t(0) : size_t(1)});
             }
         }
@@ -185,8 +201,7 @@ class Gatherer {
         waiting_.clear();
         for (size_t p = 0; p < sums_.size(); ++p)
             for (size_t j = 0; j < sums_[p].rays; ++j, ++k) {
-                const std::array u = shifted(c_.towardsLight, k, 2);
-                const LightSample light = c_.light.sample(u[0], u[1]);
+                const LightSample& light = c_.samples.towardsLight(set_, k);
                 const double height = double(normals_[p].dot(light.direction));
                 if (!(height > 0)) continue;
                 stream_.add(origins_[p], light.direction);
@@ -255,7 +270,7 @@ class Gatherer {
     const Context& c_;
     RayStream stream_;
     Vec3f itemNormal_ = Vec3f::UnitY();
-    std::array<double, 4> shifts_{};
+    size_t set_ = 0;
     std::vector<PartSum> sums_;  // of the parts of the item
     PartSum total_;
     std::vector<Vec3f> origins_, normals_;  // of the parts
@@ -308,16 +323,14 @@ class LightmapBaker {
     Gathered gather(int pass, const LightField* field, Side side) {
         const bool last = pass == options_.bounces;
         const int rays = last ? options_.rays : std::max(kFewestFieldRays, options_.rays / 4);
-        const std::vector hemisphere = sobolOwenPoints(rays, 1), towardsLight = sobolOwenPoints(rays, 2);
-        Gatherer::Context context{caster_, albedo_, points_, light_, {}, {}, {}, {}, {}, {}, {}, {}};
+        const SampleSets samples(size_t(rays), light_);
+        Gatherer::Context context{caster_, albedo_, points_, light_, samples, {}, {}, {}, {}, {}, {}};
         context.rays = size_t(rays);
         context.seed = uint64_t(2 * pass) + (side == Side::Back ? 1 : 0);
         context.side = side;
         context.field = field;
         context.expand = last;
         context.weight = weight_ ? &*weight_ : nullptr;
-        context.hemisphere = hemisphere;
-        context.towardsLight = towardsLight;
 
         Gathered result;
         result.irradiance.assign(points_.items() * 3, 0.0f);
