@@ -144,11 +144,12 @@ void uploadTable(const GlContext& context, const NormalTable& table, TableImage&
     parallelFor(size_t(groups), 1, [&, &from = sources](size_t group, size_t) {
         const float* planes[4] = {};
         for (int k = 0; k < 4; ++k) {
-            const int colour = int(group) / layers, index = int(group) % layers * 4 + k;
-            if (int(group) == 3 * layers)
+            if (int(group) == 3 * layers) {
                 planes[k] = k < 3 ? table.layer(k, used) : nullptr;
-            else
-                planes[k] = index < used ? table.layer(colour, index) : nullptr;
+                continue;
+            }
+            const int colour = int(group) / layers, index = int(group) % layers * 4 + k;
+            planes[k] = index < used ? table.layer(colour, index) : nullptr;
         }
         fillGroup(from, planes, std::span(texels).subspan(group * from.size() * 4, from.size() * 4));
     });

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <numbers>
 
 #include "precompute/base/check.h"
@@ -12,9 +13,7 @@
 namespace prt {
 
 LiveLight::LiveLight(const std::vector<Environment>& environments, int shOrder, const TableOptions& options)
-    : shOrder_(shOrder),
-      options_(options),
-      builder_(TableLayout(options.layout, options.size), shOrder, options.cosineBands()) {
+    : shOrder_(shOrder), options_(options) {
     PRT_CHECK(!environments.empty());
     for (const Environment& environment : environments) {
         TableLight light = projectTableLight(environment.view(), shOrder, options);
@@ -31,13 +30,22 @@ EnvironmentSh LiveLight::blend(const std::vector<double>& weights, double rotati
     return rotationRad == 0 ? light : rotateEnvironmentAboutUp(light, rotationRad);
 }
 
-NormalTable LiveLight::emptyTable(TableKind kind, int layers, const std::vector<double>& weights,
-                                  double rotationRad) const {
+LightTableBuilder& LiveLight::builder(int shOrder, int cosineBands) const {
+    const std::pair key(shOrder, cosineBands);
+    auto found = builders_.find(key);
+    if (found == builders_.end())
+        found = builders_.try_emplace(key, TableLayout(options_.layout, options_.size), shOrder, cosineBands)
+                    .first;
+    return found->second;
+}
+
+NormalTable LiveLight::emptyTable(const LightTableBuilder& builder, TableKind kind, int layers,
+                                  const std::vector<double>& weights, double rotationRad) const {
     NormalTable table;
     table.kind = kind;
     table.layout = options_.layout;
     table.size = options_.size;
-    table.shOrder = shOrder_;
+    table.shOrder = builder.shOrder();
     table.layers = layers;
     table.values.resize(size_t(3) * size_t(layers) * table.texels());
     std::string names, hashes;
@@ -49,23 +57,36 @@ NormalTable LiveLight::emptyTable(TableKind kind, int layers, const std::vector<
     table.attributes = {{"environmentName", names},
                         {"environmentHash", hashes},
                         {"rotationDeg", fmt::format("{:.9g}", rotationRad * 180 / std::numbers::pi)},
-                        {"cosineBands", std::to_string(options_.cosineBands())}};
+                        {"cosineBands", std::to_string(builder.cosineBands())}};
     return table;
 }
 
-NormalTable LiveLight::lightCosineTable(const std::vector<double>& weights, double rotationRad) const {
-    const EnvironmentSh light = blend(weights, rotationRad);
-    NormalTable table = emptyTable(TableKind::LightCosine, shCount(shOrder_), weights, rotationRad);
-    builder_.buildLightCosine(light, table.values);
+NormalTable LiveLight::lightCosineTable(const std::vector<double>& weights, double rotationRad,
+                                        int shOrder) const {
+    PRT_CHECK_LE(shOrder, shOrder_);
+    LightTableBuilder& maker = builder(shOrder == 0 ? shOrder_ : shOrder, cosineBands());
+    NormalTable table =
+        emptyTable(maker, TableKind::LightCosine, shCount(maker.shOrder()), weights, rotationRad);
+    maker.buildLightCosine(blend(weights, rotationRad), table.values);
     return table;
 }
 
 NormalTable LiveLight::tripleProductTable(const std::vector<double>& weights, double rotationRad,
                                           const PcaMap& pca) const {
-    PRT_CHECK_EQ(pca.shOrder, shOrder_);
-    const EnvironmentSh light = blend(weights, rotationRad);
-    NormalTable table = emptyTable(TableKind::TripleProduct, pca.components + 1, weights, rotationRad);
-    builder_.buildTripleProduct(light, pca.mean, pca.basis, table.values);
+    PRT_CHECK_LE(pca.shOrder, shOrder_);
+    LightTableBuilder& maker = builder(pca.shOrder, cosineBands());
+    NormalTable table = emptyTable(maker, TableKind::TripleProduct, pca.components + 1, weights, rotationRad);
+    maker.buildTripleProduct(blend(weights, rotationRad), pca.mean, pca.basis, table.values);
+    return table;
+}
+
+NormalTable LiveLight::preconvolvedTable(const std::vector<double>& weights, double rotationRad) const {
+    const bool exact = cosineBands() != kPaperCosineBands;
+    LightTableBuilder& maker = builder(1, exact ? environments_.front().shOrder : kPaperCosineBands);
+    NormalTable table = emptyTable(maker, TableKind::TripleProduct, 1, weights, rotationRad);
+    maker.buildLightCosine(blend(weights, rotationRad), table.values);
+    // What is open has the one coefficient √4π.
+    for (float& value : table.values) value *= std::sqrt(4 * std::numbers::pi_v<float>);
     return table;
 }
 

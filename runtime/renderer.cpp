@@ -1,4 +1,4 @@
-// Sources: [IwanickiSloan2012, Sec. 3] for the two techniques. Deferred: one pass finds what is seen, the
+// Sources: [IwanickiSloan2012, Sec. 3 to 5] for the techniques. Deferred: one pass finds what is seen, the
 // second lights each pixel once, so that surface() gives exactly the points that render() shades.
 #include "runtime/renderer.h"
 
@@ -14,9 +14,9 @@
 #include "precompute/base/parallel.h"
 #include "precompute/math/sh.h"
 #include "runtime/camera_frame.h"
-#include "runtime/coefficient_images.h"
 #include "runtime/gl_objects.h"
 #include "runtime/scene_images.h"
+#include "runtime/technique_data.h"
 
 namespace prt {
 namespace {
@@ -40,20 +40,6 @@ struct Targets {
     }
 };
 
-/// What a technique needs besides the surface.
-struct TechniqueData {
-    CoefficientImage coefficients;
-    TableImage table;
-    int shOrder = 0, perPoint = 0;
-    std::string defines;                        ///< of light.frag, but for the table's layout
-    std::map<std::string, GlProgram> programs;  ///< by the table's layout
-};
-
-const char* layoutDefine(const std::string& layout) {
-    if (layout == "dual-paraboloid") return "#define TABLE_DUAL_PARABOLOID\n";
-    return layout == "octahedral" ? "#define TABLE_OCTAHEDRAL\n" : "";
-}
-
 std::vector<float> readImage(const GlFunctions& gl, const GlObject& image, size_t pixels) {
     std::vector<float> values(pixels * 4);
     gl.GetTextureImage(image.name(), 0, GL_RGBA, GL_FLOAT, GLsizei(values.size() * sizeof(float)),
@@ -69,11 +55,11 @@ FloatImage readRgb(const GlFunctions& gl, const GlObject& image, int width, int 
     return result;
 }
 
-void checkGrid(const PointGrid& grid, const Scene& scene, const char* what) {
-    if (grid.domain == PointDomain::Vertex && grid.count != scene.vertexCount())
-        throw InputError(what, fmt::format("holds {} vertices, the mesh {}", grid.count, scene.vertexCount()),
+void checkGrid(const PointGrid& grid, size_t vertexCount, bool hasAtlas, const char* what) {
+    if (grid.domain == PointDomain::Vertex && grid.count != vertexCount)
+        throw InputError(what, fmt::format("holds {} vertices, the mesh {}", grid.count, vertexCount),
                          "both must come from one run of prt precompute");
-    if (grid.domain == PointDomain::Texel && scene.uv1.empty())
+    if (grid.domain == PointDomain::Texel && !hasAtlas)
         throw InputError(what, "is per texel, but the mesh has no atlas coordinates (TEXCOORD_1)",
                          "both must come from one run of prt precompute");
 }
@@ -82,29 +68,30 @@ Vec3f fromRgba(const float* rgba) { return {rgba[0], rgba[1], rgba[2]}; }
 
 }  // namespace
 
-const char* techniqueName(Technique technique) { return technique == Technique::Unc ? "unc" : "pca"; }
-
 struct Renderer::State {
     State(GlContext& glContext, const Scene& source)
         : context(glContext), gl(glContext.gl()), scene(glContext, source), bounds(sceneBounds(source)) {
         geometry.positions = source.positions;
         geometry.indices = source.indices;
+        hasAtlas = !source.uv1.empty();
     }
 
-    void addTechnique(Technique technique, const PointGrid& grid, int shOrder, int perPoint,
-                      std::span<const float> values);
     CameraFrame begin(const Camera& camera, const RenderOptions& options);
     void drawSurface(const CameraFrame& camera, const RenderOptions& options);
     void drawLight(const TechniqueData& data);
     void drawBackground(const CameraFrame& camera);
     void drawFrame(const CameraFrame& camera, const TechniqueData& data, const RenderOptions& options);
-    const TechniqueData& ready(Technique technique) const;
+    TechniqueData& dataOf(Technique technique);
+    const TechniqueData& ready(Technique technique);
+    template <class Map>
+    void add(Technique technique, const Map& map, int number, int has);
 
     GlContext& context;
     const GlFunctions& gl;
     SceneImages scene;
     Bounds bounds;
     Scene geometry;  // positions and indices, for surface()
+    bool hasAtlas = false;
     std::map<Technique, TechniqueData> techniques;
     std::vector<SunLight> suns;  // without their shadows
     CoefficientImage sunShadows;
@@ -114,18 +101,6 @@ struct Renderer::State {
     GlObject vertexArray;
     std::unique_ptr<Targets> targets;
 };
-
-void Renderer::State::addTechnique(Technique technique, const PointGrid& grid, int shOrder, int perPoint,
-                                   std::span<const float> values) {
-    const bool pca = technique == Technique::Pca;
-    TechniqueData& data = techniques[technique];
-    data.coefficients =
-        uploadCoefficients(context, grid, perPoint, values, pca ? "PCA weights" : "visibility");
-    data.shOrder = shOrder;
-    data.perPoint = perPoint;
-    if (grid.domain == PointDomain::Vertex) data.defines += "#define PER_VERTEX\n";
-    if (pca) data.defines += "#define WITH_MEAN\n";
-}
 
 CameraFrame Renderer::State::begin(const Camera& camera, const RenderOptions& options) {
     context.makeCurrent();
@@ -161,25 +136,17 @@ void Renderer::State::drawSurface(const CameraFrame& camera, const RenderOptions
 // Over the pixels whose depth is greater than that of nothing.
 void Renderer::State::drawLight(const TechniqueData& data) {
     gl.DepthFunc(GL_LESS);
-    const GlProgram& program = data.programs.at(data.table.layout);
-    program.use();
-    program.set("layers", data.table.layers);
-    program.set("tableSize", data.table.size);
-    program.set("gridSize", data.coefficients.grid.width, data.coefficients.grid.height);
+    const GlProgram& program = data.use();
     program.set("sunCount", int(suns.size()));
     for (size_t i = 0; i < suns.size(); ++i) {
         program.set(fmt::format("sunDirection[{}]", i).c_str(), suns[i].direction);
         program.set(fmt::format("sunIrradiance[{}]", i).c_str(), suns[i].irradiance);
     }
-    const GLuint images[] = {
-        targets->place.name(),    targets->normal.name(),           targets->albedo.name(),
-        targets->triangle.name(), data.coefficients.texture.name(), data.table.texture.name(),
-        scene.indices(),          sunShadows.texture.name()};
-    GLuint unit = 0;
-    for (const GLuint image : images) {
+    const std::pair<GLuint, GLuint> images[] = {{0, targets->place.name()},  {1, targets->normal.name()},
+                                                {2, targets->albedo.name()}, {3, targets->triangle.name()},
+                                                {6, scene.indices()},        {7, sunShadows.texture.name()}};
+    for (const auto& [unit, image] : images)
         if (image != 0) gl.BindTextureUnit(unit, image);
-        ++unit;
-    }
     gl.DrawArrays(GL_TRIANGLES, 0, 3);
 }
 
@@ -208,31 +175,32 @@ void Renderer::State::drawFrame(const CameraFrame& camera, const TechniqueData& 
     if (background) drawBackground(camera);
 }
 
-const TechniqueData& Renderer::State::ready(Technique technique) const {
+TechniqueData& Renderer::State::dataOf(Technique technique) {
     const auto found = techniques.find(technique);
-    const char* name = techniqueName(technique);
-    if (found == techniques.end())
-        throw InputError(name,
-                         technique == Technique::Pca ? "there are no PCA weights" : "there is no visibility",
-                         technique == Technique::Pca ? "run prt compress" : "run prt precompute");
-    if (!found->second.table.texture)
-        throw InputError(name, "no table was set", "make one with prt tabulate");
-    return found->second;
+    if (found != techniques.end()) return found->second;
+    const bool visibility = readsVisibility(technique);
+    throw InputError(techniqueName(technique),
+                     visibility ? "there is no visibility" : "there are no PCA weights",
+                     visibility ? "run prt precompute" : "run prt compress");
+}
+
+const TechniqueData& Renderer::State::ready(Technique technique) {
+    const TechniqueData& data = dataOf(technique);
+    data.checkLight();
+    return data;
 }
 
 Renderer::Renderer(GlContext& context, const Scene& scene, const VisibilityMap* visibility,
                    const PcaMap* pca) {
     context.makeCurrent();
-    if (visibility) checkGrid(visibility->grid, scene, "visibility");
-    if (pca) checkGrid(pca->grid, scene, "PCA weights");
+    const size_t vertices = scene.vertexCount();
+    if (visibility) checkGrid(visibility->grid, vertices, !scene.uv1.empty(), "visibility");
+    if (pca) checkGrid(pca->grid, vertices, !scene.uv1.empty(), "PCA weights");
     state_ = std::make_unique<State>(context, scene);
-    State& s = *state_;
-    s.vertexArray = makeVertexArray(s.gl);
-    s.backgroundProgram = GlProgram(s.gl, "screen.vert", "background.frag", "");
-    if (visibility)
-        s.addTechnique(Technique::Unc, visibility->grid, visibility->shOrder, shCount(visibility->shOrder),
-                       visibility->coefficients);
-    if (pca) s.addTechnique(Technique::Pca, pca->grid, pca->shOrder, pca->components, pca->weights);
+    state_->vertexArray = makeVertexArray(state_->gl);
+    state_->backgroundProgram = GlProgram(state_->gl, "screen.vert", "background.frag", "");
+    if (visibility) add(Technique::Unc, *visibility);
+    if (pca) add(Technique::Pca, *pca);
     context.check("making the renderer");
 }
 
@@ -240,26 +208,57 @@ Renderer::~Renderer() {
     if (state_) state_->context.makeCurrent();
 }
 
+template <class Map>
+void Renderer::State::add(Technique technique, const Map& map, int number, int has) {
+    context.makeCurrent();
+    checkGrid(map.grid, geometry.vertexCount(), hasAtlas,
+              readsVisibility(technique) ? "visibility" : "PCA weights");
+    if (number > 0 && number != has)
+        throw InputError(techniqueName(technique), fmt::format("was given {} in place of {}", has, number),
+                         "reduce it to them");
+    techniques.erase(technique);
+    techniques.emplace(std::piecewise_construct, std::forward_as_tuple(technique),
+                       std::forward_as_tuple(context, technique, map));
+}
+
+void Renderer::add(Technique technique, const VisibilityMap& visibility) {
+    PRT_CHECK(readsVisibility(technique));
+    const int number = technique.kind == TechniqueKind::Sh2 ? 2 : technique.number;
+    state_->add(technique, visibility, number, visibility.shOrder);
+}
+
+void Renderer::add(Technique technique, const PcaMap& pca) {
+    PRT_CHECK(!readsVisibility(technique));
+    state_->add(technique, pca, technique.number, pca.components);
+}
+
 void Renderer::setTable(const NormalTable& table) {
-    state_->context.makeCurrent();
-    const bool pca = table.kind == TableKind::TripleProduct;
-    const Technique technique = pca ? Technique::Pca : Technique::Unc;
-    const auto found = state_->techniques.find(technique);
-    if (found == state_->techniques.end())
+    setTable(table.kind == TableKind::TripleProduct ? Technique::Pca : Technique::Unc, table);
+}
+
+void Renderer::setTable(Technique technique, const NormalTable& table) {
+    State& s = *state_;
+    s.context.makeCurrent();
+    if (!s.techniques.contains(technique))
         throw InputError(techniqueName(technique),
                          fmt::format("a {} table was given, but {}", tableKindName(table.kind),
-                                     pca ? "no PCA weights" : "no visibility"));
-    TechniqueData& data = found->second;
-    const int layers = data.perPoint + (pca ? 1 : 0);
-    if (table.shOrder != data.shOrder || table.layers != layers)
-        throw InputError("table",
-                         fmt::format("is of order {} with {} layers, the data needs order {} with {}",
-                                     table.shOrder, table.layers, data.shOrder, layers),
-                         "make it anew with prt tabulate");
-    uploadTable(state_->context, table, data.table);
-    if (!data.programs.contains(table.layout))
-        data.programs.emplace(table.layout, GlProgram(state_->gl, "screen.vert", "light.frag",
-                                                      data.defines + layoutDefine(table.layout)));
+                                     readsVisibility(technique) ? "no visibility" : "no PCA weights"));
+    s.dataOf(technique).setTable(table);
+}
+
+void Renderer::setLight(Technique technique, const LiveLight& light, const std::vector<double>& weights,
+                        double rotationRad) {
+    State& s = *state_;
+    s.context.makeCurrent();
+    TechniqueData& data = s.dataOf(technique);
+    if (technique.kind == TechniqueKind::Unc)
+        data.setTable(light.lightCosineTable(weights, rotationRad, data.shOrder()));
+    else if (technique.kind == TechniqueKind::Pca)
+        data.setTable(light.tripleProductTable(weights, rotationRad, data.basis()));
+    else if (technique.kind == TechniqueKind::PreconvolvedAo)
+        data.setTable(light.preconvolvedTable(weights, rotationRad));
+    else
+        data.setLight(light.blend(weights, rotationRad), light.cosineBands());
 }
 
 void Renderer::setSuns(std::span<const SunLight> suns, const PointGrid& grid) {

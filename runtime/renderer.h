@@ -13,11 +13,10 @@
 #include "precompute/io/table_file.h"
 #include "precompute/io/visibility_file.h"
 #include "runtime/gl_context.h"
+#include "runtime/live_light.h"
+#include "runtime/technique.h"
 
 namespace prt {
-
-enum class Technique { Unc, Pca };
-const char* techniqueName(Technique technique);  ///< "unc", "pca"
 
 struct RenderOptions {
     int width = 1280, height = 800;
@@ -42,16 +41,29 @@ inline constexpr int kMostSuns = 8;
 
 class Renderer {
   public:
-    /// Uploads geometry and textures; visibility (for unc) and PCA weights (for pca) are optional, domain and
-    /// size of each are taken from its grid.
-    /// @throws InputError  per-vertex count differs from the mesh, no uv1 for per-texel data, texture limits
-    /// exceeded
+    /// Uploads geometry and textures, and adds Unc and Pca where visibility and PCA weights are given.
+    /// @throws InputError  as add(); texture limits exceeded
     Renderer(GlContext& context, const Scene& scene, const VisibilityMap* visibility, const PcaMap* pca);
     ~Renderer();
 
-    /// Uploads the table of a technique (already blended and rotated); replaces the previous one.
+    /// Uploads what a technique reads; replaces what it read before. Domain and size are taken from the grid.
+    /// Of a technique with a number the map must have just that many bands or vectors, Sh2 two bands
+    /// (compress/reduce_visibility.h).
+    /// @throws InputError  per-vertex count differs from the mesh, no uv1 for per-texel data, other bands or
+    /// vectors, texture limits exceeded
+    void add(Technique technique, const VisibilityMap& visibility);
+    void add(Technique technique, const PcaMap& pca);
+
+    /// Uploads the table of Unc or Pca (already blended and rotated); replaces the previous one.
     /// @throws InputError  kind, order or layer count does not fit the visibility or PCA data
     void setTable(const NormalTable& table);
+    /// The same for any technique that takes a table.
+    void setTable(Technique technique, const NormalTable& table);
+    /// Light of any technique that was added: its table, or what it has in place of one.
+    /// @param light  of the bands of the visibility that maps were made from, or more
+    /// @throws InputError  the technique was not added; more uniforms than OpenGL takes
+    void setLight(Technique technique, const LiveLight& light, const std::vector<double>& weights,
+                  double rotationRad);
     /// Lights besides the tables', for every technique; replaces the previous ones. Each adds its irradiance
     /// × max(0, n·direction) × shadow.
     /// @param grid  of the shadows: that of the visibility or PCA data
@@ -60,7 +72,7 @@ class Renderer {
     /// Background: radiance per world direction, or black when never set.
     void setBackground(const FloatImage& latLong, double rotationRad);
 
-    /// @throws InputError  the technique's data or table was not given
+    /// @throws InputError  the technique was not added, or has no table or light
     RenderedFrame render(const Camera& camera, Technique technique, const RenderOptions& options);
     /// The points that render() shades: same geometry, textures, normal maps and filtering.
     SurfaceImage surface(const Camera& camera, const RenderOptions& options);

@@ -4,18 +4,13 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <optional>
+#include <string_view>
+#include <utility>
 
-#include "compress/tabulate_job.h"
 #include "precompute/base/atomic_file.h"
 #include "precompute/base/error.h"
 #include "precompute/base/log.h"
-#include "precompute/io/bundle.h"
 #include "precompute/io/environment_file.h"
-#include "precompute/io/glb.h"
-#include "precompute/io/table_file.h"
-#include "precompute/io/visibility_file.h"
-#include "runtime/live_light.h"
 #include "runtime/reference/reference.h"
 #include "runtime/renderer.h"
 #include "tools/background.h"
@@ -24,113 +19,11 @@
 #include "tools/comparison.h"
 #include "tools/relight_arguments.h"
 #include "tools/relight_suns.h"
+#include "tools/relight_techniques.h"
 #include "tools/report.h"
 
 namespace prt::tools {
 namespace {
-
-/// What is read from the bundle for one run.
-struct RelightData {
-    Bundle bundle;
-    Scene scene;
-    std::optional<VisibilityMap> visibility;
-    std::optional<PcaMap> pca;
-    std::vector<Environment> environments;
-    std::vector<double> weights;
-    int shOrder = 0;
-};
-
-RelightData loadData(const RelightArguments& arguments) {
-    RelightData data{Bundle::open(arguments.bundlePath), {}, {}, {}, {}, {}, 0};
-    const std::string precompute = fmt::format("prt precompute MESH -o {}", arguments.bundlePath);
-    data.bundle.require("mesh.glb", precompute);
-    data.scene = readGltf(data.bundle.pathOf("mesh.glb").string());
-    const bool compare = arguments.compareReference;
-    if (arguments.technique == "unc" || compare) {
-        data.bundle.require("visibility.exr", precompute);
-        data.visibility = readVisibilityFile(data.bundle.pathOf("visibility.exr").string());
-        data.shOrder = data.visibility->shOrder;
-    }
-    // A comparison measures what is there; asking for pca itself insists on it.
-    const bool pcaCurrent = data.bundle.find("pca.exr") && data.bundle.staleReason("pca.exr", false).empty();
-    if (arguments.technique == "pca" || (compare && pcaCurrent)) {
-        data.bundle.require("pca.exr", fmt::format("prt compress {}", arguments.bundlePath));
-        data.pca = readPcaFile(data.bundle.pathOf("pca.exr").string());
-        data.shOrder = data.pca->shOrder;
-    } else if (compare && data.bundle.find("pca.exr")) {
-        logWarning("pca.exr is stale and is not compared; renew it with: prt compress " +
-                   arguments.bundlePath);
-    }
-    for (const EnvironmentArgument& argument : arguments.environments) {
-        data.environments.push_back(loadEnvironment(argument.source, arguments.environmentOptions));
-        data.weights.push_back(argument.weight);
-    }
-    return data;
-}
-
-/// Tables from the bundle when all of them are there, current and of the right environment; else built here.
-class TableSource {
-  public:
-    TableSource(const RelightArguments& arguments, const RelightData& data)
-        : arguments_(arguments), data_(data), rotationRad_(arguments.rotateDeg * std::numbers::pi / 180) {}
-
-    NormalTable make(Technique technique, const std::vector<double>& weights) {
-        if (auto stored = blendStored(technique, weights)) {
-            fromBundle_ = true;
-            return std::move(*stored);
-        }
-        fromBundle_ = false;
-        if (!live_) live_.emplace(data_.environments, data_.shOrder, arguments_.tables);
-        return technique == Technique::Unc ? live_->lightCosineTable(weights, rotationRad_)
-                                           : live_->tripleProductTable(weights, rotationRad_, *data_.pca);
-    }
-    double rotationRad() const { return rotationRad_; }
-    const char* origin() const { return fromBundle_ ? "bundle" : "built"; }
-
-  private:
-    std::optional<NormalTable> blendStored(Technique technique, const std::vector<double>& weights) const {
-        if (rotationRad_ != 0) return std::nullopt;
-        const TableKind kind =
-            technique == Technique::Unc ? TableKind::LightCosine : TableKind::TripleProduct;
-        std::optional<NormalTable> blend;
-        for (size_t e = 0; e < weights.size(); ++e) {
-            if (weights[e] == 0) continue;
-            auto table = stored(kind, data_.environments[e]);
-            if (!table) return std::nullopt;
-            for (float& value : table->values) value *= float(weights[e]);
-            if (!blend) {
-                blend = std::move(table);
-                continue;
-            }
-            if (blend->layers != table->layers) return std::nullopt;
-            for (size_t i = 0; i < blend->values.size(); ++i) blend->values[i] += table->values[i];
-        }
-        return blend;
-    }
-
-    std::optional<NormalTable> stored(TableKind kind, const Environment& environment) const {
-        const std::string name =
-            tableFileName(environment.name, tableKindName(kind), arguments_.tables.layout);
-        if (!data_.bundle.find(name) || !data_.bundle.staleReason(name, false).empty()) return std::nullopt;
-        NormalTable table = readTableFile(data_.bundle.pathOf(name).string());
-        const TableOptions& wanted = arguments_.tables;
-        const auto is = [&](const char* attribute, const std::string& value) {
-            const auto found = table.attributes.find(attribute);
-            return found != table.attributes.end() && found->second == value;
-        };
-        const bool fits = table.size == wanted.size && table.shOrder == data_.shOrder &&
-                          is("environmentHash", environment.contentHash) &&
-                          is("cosineBands", std::to_string(wanted.cosineBands())) &&
-                          is("window", wanted.window) && is("extractSun", wanted.extractSun ? "yes" : "no");
-        return fits ? std::optional(std::move(table)) : std::nullopt;
-    }
-
-    const RelightArguments& arguments_;
-    const RelightData& data_;
-    double rotationRad_;
-    bool fromBundle_ = false;
-    std::optional<LiveLight> live_;
-};
 
 /// The exposure at which the brightest tenth of the covered pixels is just below white.
 double autoExposure(const FloatImage& radiance, const SurfaceImage& surface) {
@@ -146,10 +39,13 @@ double autoExposure(const FloatImage& radiance, const SurfaceImage& surface) {
     return *at > 0 ? std::log2(0.6 / double(*at)) : 0;
 }
 
-std::string fileFor(const std::string& pattern, const std::string& environment) {
+std::string fileFor(const std::string& pattern, const std::string& environment,
+                    const std::string& technique) {
     std::string name = pattern;
-    const size_t at = name.find("{env}");
-    if (at != std::string::npos) name.replace(at, 5, environment);
+    for (const auto& [word, value] : {std::pair{"{env}", environment}, std::pair{"{technique}", technique}}) {
+        const size_t at = name.find(word);
+        if (at != std::string::npos) name.replace(at, std::string_view(word).size(), value);
+    }
     return name;
 }
 
@@ -184,17 +80,18 @@ class Relight {
     Relight(const RelightArguments& arguments, bool printText)
         : arguments_(arguments),
           printText_(printText),
-          data_(loadData(arguments)),
-          tables_(arguments_, data_),
-          suns_(data_.bundle, data_.scene, data_.environments, tables_.rotationRad()),
+          data_(loadRelightData(arguments)),
+          techniques_(arguments_, data_),
+          suns_(data_.bundle, data_.scene, data_.environments, techniques_.rotationRad()),
           camera_(arguments.camera(sceneBounds(data_.scene))),
           options_{arguments.width, arguments.height, !arguments.noNormalMap},
           context_(arguments.context.kind()),
-          renderer_(context_, data_.scene, data_.visibility ? &*data_.visibility : nullptr,
-                    data_.pca ? &*data_.pca : nullptr) {}
+          renderer_(context_, data_.scene, nullptr, nullptr) {
+        techniques_.addTo(renderer_);
+    }
 
     Report run() {
-        const bool reference = arguments_.compareReference || arguments_.technique == "reference";
+        const bool reference = arguments_.compareReference || arguments_.reference;
         surface_ = renderer_.surface(camera_, options_);
         covered_ = size_t(std::count_if(surface_.triangle.begin(), surface_.triangle.end(),
                                         [](uint32_t t) { return t != kNoTriangle; }));
@@ -204,7 +101,7 @@ class Relight {
 
         Report report;
         report.set("bundle", arguments_.bundlePath)
-            .set("technique", arguments_.technique)
+            .set("technique", fmt::format("{}", fmt::join(arguments_.techniqueNames, ",")))
             .set("width", options_.width)
             .set("height", options_.height)
             .set("covered_pixels", uint64_t(covered_))
@@ -234,7 +131,7 @@ class Relight {
   private:
     void trace() {
         const RayCaster caster(data_.scene.positions, data_.scene.indices);
-        const std::vector<double> rotations(data_.environments.size(), tables_.rotationRad());
+        const std::vector<double> rotations(data_.environments.size(), techniques_.rotationRad());
         directions_ = makeReferenceDirections(data_.environments, rotations, arguments_.referenceRays);
         if (!arguments_.compareReference) {
             truth_ = traceReference(caster, surface_, directions_);
@@ -262,66 +159,77 @@ class Relight {
         const bool needBackground = !arguments_.noBackground && !arguments_.output.empty();
         const FloatImage background =
             needBackground ? blendImages(data_.environments, weights) : FloatImage{};
-        if (needBackground) renderer_.setBackground(background, tables_.rotationRad());
+        if (needBackground) renderer_.setBackground(background, techniques_.rotationRad());
 
         std::vector<float> truth;
         if (!truth_.empty()) truth = blend(truth_, weights);
-        FloatImage image, referenceImage;
+        FloatImage referenceImage;
         if (!truth.empty()) {
             referenceImage = radianceFromIrradiance(truth, surface_);
             if (needBackground)
                 paintBackground(referenceImage, surface_, camera_, sceneBounds(data_.scene), background,
-                                tables_.rotationRad());
+                                techniques_.rotationRad());
         }
-        if (arguments_.technique == "reference") image = referenceImage;
-
-        if (arguments_.tables.extractSun && arguments_.technique != "reference") {
+        if (arguments_.tables.extractSun && !data_.techniques.empty()) {
             const std::vector<SunLight> suns = suns_.make(weights);
             renderer_.setSuns(suns, suns_.grid());
             report.set("suns", uint64_t(suns.size()));
         }
+        if (arguments_.reference) writeImages(referenceImage, referenceImage, name, "reference");
 
         std::vector<Report> rows;
-        for (const Technique technique : {Technique::Unc, Technique::Pca}) {
-            const bool asked = arguments_.technique == techniqueName(technique);
-            const bool available =
-                technique == Technique::Unc ? data_.visibility.has_value() : data_.pca.has_value();
-            if (!available || !(asked || arguments_.compareReference)) continue;
-            renderer_.setTable(tables_.make(technique, weights));
-            const RenderedFrame frame = renderer_.render(camera_, technique, options_);
-            if (asked) {
-                image = frame.radiance;
-                report.set("tables", tables_.origin());
-            }
-            if (!arguments_.compareReference) continue;
-            const IrradianceError error = compareIrradiance(frame.irradiance.pixels, truth, surface_);
-            Report row;
-            row.set("technique", techniqueName(technique))
-                .set("relative_rmse", error.relativeRmse)
-                .set("psnr_db", error.psnrDb);
-            rows.push_back(std::move(row));
-            print(name, techniqueName(technique), error);
-        }
+        for (const Technique technique : data_.techniques)
+            draw(technique, weights, truth, referenceImage, name, report, rows);
         if (arguments_.compareReference) {
             const IrradianceError error = compareIrradiance(blend(floor_, weights), truth, surface_);
             report.set("floor_rmse", error.relativeRmse).set("rows", rows);
             print(name, "floor", error);
         }
-        writeImages(image, referenceImage, name);
+    }
+
+    Technique firstAsked() const {
+        return *std::ranges::find_if(data_.techniques,
+                                     [&](Technique technique) { return arguments_.isAsked(technique); });
+    }
+
+    /// One technique: its picture where it was asked for, its error where there is truth.
+    void draw(Technique technique, const std::vector<double>& weights, const std::vector<float>& truth,
+              const FloatImage& referenceImage, const std::string& environment, Report& report,
+              std::vector<Report>& rows) {
+        const std::string name = techniqueName(technique);
+        const char* origin = techniques_.setLight(renderer_, technique, weights);
+        const RenderedFrame frame = renderer_.render(camera_, techniques_.drawn(technique), options_);
+        if (arguments_.isAsked(technique)) {
+            if (technique == firstAsked()) report.set("tables", origin);
+            writeImages(frame.radiance, referenceImage, environment, name);
+        }
+        if (!arguments_.compareReference) return;
+        const IrradianceError error = compareIrradiance(frame.irradiance.pixels, truth, surface_);
+        const TechniqueCost cost =
+            techniqueCost(technique, data_.source(), data_.domain(), arguments_.tables.cosineBands());
+        Report row;
+        row.set("technique", name)
+            .set("relative_rmse", error.relativeRmse)
+            .set("psnr_db", error.psnrDb)
+            .set("fetches", cost.fetches)
+            .set("multiply_adds", cost.multiplyAdds);
+        rows.push_back(std::move(row));
+        print(environment, name, error);
     }
 
     void print(const std::string& name, const std::string& technique, const IrradianceError& error) const {
         if (!printText_) return;
-        fmt::print("{:<16} {:<10} relative RMSE {:.4f}   PSNR {:.1f} dB\n", name, technique,
+        fmt::print("{:<16} {:<16} relative RMSE {:.4f}   PSNR {:.1f} dB\n", name, technique,
                    error.relativeRmse, error.psnrDb);
     }
 
-    void writeImages(const FloatImage& image, const FloatImage& reference, const std::string& name) const {
+    void writeImages(const FloatImage& image, const FloatImage& reference, const std::string& environment,
+                     const std::string& technique) const {
         const double exposure = arguments_.exposureStops
                                     ? *arguments_.exposureStops
                                     : autoExposure(reference.pixels.empty() ? image : reference, surface_);
-        writeImage(fileFor(arguments_.output, name), image, exposure);
-        writeImage(fileFor(arguments_.referenceOutput, name), reference, exposure);
+        writeImage(fileFor(arguments_.output, environment, technique), image, exposure);
+        writeImage(fileFor(arguments_.referenceOutput, environment, technique), reference, exposure);
         if (arguments_.differenceOutput.empty()) return;
         FloatImage difference = image;
         for (size_t p = 0; p < surface_.pixels(); ++p)
@@ -329,23 +237,32 @@ class Relight {
                 difference.pixels[c] = surface_.triangle[p] == kNoTriangle
                                            ? 0.0f
                                            : 4 * std::abs(image.pixels[c] - reference.pixels[c]);
-        writeImage(fileFor(arguments_.differenceOutput, name), difference, exposure);
+        writeImage(fileFor(arguments_.differenceOutput, environment, technique), difference, exposure);
     }
 
     void timeFrames(Report& report) {
-        if (arguments_.timeFrames == 0 || arguments_.technique == "reference") return;
-        const Technique technique = arguments_.technique == "unc" ? Technique::Unc : Technique::Pca;
-        renderer_.setTable(tables_.make(technique, data_.weights));
-        if (arguments_.tables.extractSun) renderer_.setSuns(suns_.make(data_.weights), suns_.grid());
-        const double ms = renderer_.frameMilliseconds(camera_, technique, options_, arguments_.timeFrames);
-        report.set("frame_ms", ms);
-        if (printText_) fmt::print("{:<16} {:<10} {:.1f} ms a frame\n", "", arguments_.technique, ms);
+        if (arguments_.timeFrames == 0) return;
+        if (arguments_.tables.extractSun && !data_.techniques.empty())
+            renderer_.setSuns(suns_.make(data_.weights), suns_.grid());
+        std::vector<Report> rows;
+        for (const Technique technique : data_.techniques) {
+            if (!arguments_.isAsked(technique)) continue;
+            techniques_.setLight(renderer_, technique, data_.weights);
+            const double ms = renderer_.frameMilliseconds(camera_, techniques_.drawn(technique), options_,
+                                                          arguments_.timeFrames);
+            if (rows.empty()) report.set("frame_ms", ms);
+            Report row;
+            row.set("technique", techniqueName(technique)).set("frame_ms", ms);
+            rows.push_back(std::move(row));
+            if (printText_) fmt::print("{:<16} {:<16} {:.1f} ms a frame\n", "", techniqueName(technique), ms);
+        }
+        if (rows.size() > 1) report.set("frame_times", rows);
     }
 
     const RelightArguments& arguments_;
     const bool printText_;
     RelightData data_;
-    TableSource tables_;
+    RelightTechniques techniques_;
     RelightSuns suns_;
     Camera camera_;
     RenderOptions options_;
@@ -361,15 +278,16 @@ class Relight {
 
 void runRelightCommand(int argc, char** argv) {
     RelightArguments arguments;
-    CommandLine line("prt relight",
-                     "Draws a bundle under any blend of environments, and compares with ray-traced truth.",
-                     "Environments: .exr or .hdr in any layout of --env-layout, or sky:clear, sky:overcast, "
-                     "sky:sunset, sky:uniform.\n"
-                     "Examples:\n"
-                     "  prt relight out/house.prt --env sunset.exr:0.7 --env night.exr:0.3 --rotate 40 "
-                     "--technique pca -o frame.png\n"
-                     "  prt relight out/house.prt --env city.exr --env forest.exr --each --compare-reference "
-                     "--json errors.json");
+    CommandLine line(
+        "prt relight", "Draws a bundle under any blend of environments, and compares with ray-traced truth.",
+        "Environments: .exr or .hdr in any layout of --env-layout, or sky:clear, sky:overcast, "
+        "sky:sunset, sky:uniform.\n" +
+            techniqueHelp() +
+            "Examples:\n"
+            "  prt relight out/house.prt --env sunset.exr:0.7 --env night.exr:0.3 --rotate 40 "
+            "--technique pca -o frame.png\n"
+            "  prt relight out/house.prt --env city.exr --env forest.exr --each --compare-reference "
+            "--technique all --json errors.json");
     arguments.addTo(line);
     if (!line.parse(argc, argv)) return;
     arguments.finish();

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <numbers>
@@ -33,6 +34,13 @@ void checkImageName(const std::string& option, const std::string& file) {
 
 }  // namespace
 
+std::string techniqueHelp() {
+    std::string text = "Techniques (unc and pca take any number that the bundle has):\n";
+    for (const Technique technique : listedTechniques())
+        text += fmt::format("  {:<16} {}\n", techniqueName(technique), techniqueSummary(technique));
+    return text + "  reference        ray tracing\n";
+}
+
 EnvironmentArgument parseEnvironmentArgument(const std::string& text) {
     EnvironmentArgument argument{text, 1};
     const size_t colon = text.rfind(':');
@@ -54,8 +62,11 @@ void RelightArguments::addTo(CommandLine& line) {
                   "environment and its weight (1); repeat to blend; none: sky:clear");
     addEnvironmentOptions(line, environmentOptions);
     line.real("--rotate", rotateDeg, -1e6, 1e6, "turn of the environments about the up axis, degrees");
-    line.choice("--technique", technique, {"unc", "pca", "reference"},
-                "visibility x light table, weights x component tables, or ray tracing");
+    line.textList(
+        "--technique", techniqueNames, "NAME",
+        fmt::format("repeat to draw several; {{technique}} in file names becomes the name [{}, reference "
+                    "| all; default unc]",
+                    listedTechniqueNames()));
     line.text("-o,--output", output, "FILE", "image to write: .png (sRGB) or .exr (linear)");
     line.text("--size", sizeText, "WIDTHxHEIGHT", "pixels");
     line.text("--exposure", exposureText, "STOPS|auto", "brightness of .png output");
@@ -72,7 +83,7 @@ void RelightArguments::addTo(CommandLine& line) {
     addTableOptions(line, "--table-", tables);
     addSunOption(line, tables);
     line.flag("--compare-reference", compareReference,
-              "print the error of every technique against ray tracing");
+              "print the errors of unc, pca and every --technique against ray tracing");
     line.flag("--each", each,
               "treat every environment by itself instead of blending; {env} in file names becomes its name");
     line.integer("--reference-rays", referenceRays, 64, 1 << 20,
@@ -85,7 +96,33 @@ void RelightArguments::addTo(CommandLine& line) {
     line.integer("--time-frames", timeFrames, 0, 10000, "measure the median time of so many frames");
 }
 
+void RelightArguments::parseTechniques() {
+    if (techniqueNames.empty()) techniqueNames.push_back("unc");
+    for (const std::string& name : techniqueNames) {
+        const auto technique = techniqueFromName(name);
+        if (technique)
+            techniques.push_back(*technique);
+        else if (name == "reference")
+            reference = true;
+        else if (name == "all")
+            allTechniques = true;
+        else
+            throw UsageError("--technique", fmt::format("there is no technique called '{}'", name),
+                             fmt::format("use one of {}, reference, all", listedTechniqueNames()));
+    }
+    if (!allTechniques && techniqueNames.size() == 1) return;
+    for (const std::string& file : {output, differenceOutput})
+        if (!file.empty() && file.find("{technique}") == std::string::npos)
+            throw UsageError("--technique", fmt::format("'{}' would be written once per technique", file),
+                             "put {technique} into the name");
+}
+
+bool RelightArguments::isAsked(Technique technique) const {
+    return allTechniques || std::ranges::find(techniques, technique) != techniques.end();
+}
+
 void RelightArguments::finish() {
+    parseTechniques();
     if (environmentTexts.empty()) environmentTexts.push_back("sky:clear");
     for (const std::string& text : environmentTexts) environments.push_back(parseEnvironmentArgument(text));
     parseSize("--size", sizeText, width, height);

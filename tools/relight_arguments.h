@@ -9,6 +9,7 @@
 #include "precompute/io/environment_file.h"
 #include "precompute/io/scene.h"
 #include "precompute/io/surface_image.h"
+#include "runtime/technique.h"
 #include "tools/context_arguments.h"
 
 namespace prt::tools {
@@ -23,10 +24,13 @@ struct EnvironmentArgument {
 /// @throws UsageError  empty name, weight not finite or negative
 EnvironmentArgument parseEnvironmentArgument(const std::string& text);
 
+/// What every technique is, a line each.
+std::string techniqueHelp();
+
 struct RelightArguments {
     std::string bundlePath;
     std::vector<std::string> environmentTexts;
-    std::string technique = "unc";
+    std::vector<std::string> techniqueNames;  ///< as given; ["unc"] where none was
     std::string sizeText = "1280x800";
     std::string output, referenceOutput, differenceOutput;
     std::string exposureText = "0";
@@ -35,6 +39,9 @@ struct RelightArguments {
     int referenceRays = 4096, timeFrames = 0;
     bool noNormalMap = false, noBackground = false, compareReference = false, each = false;
 
+    std::vector<Technique> techniques;  ///< asked for by their own names
+    bool allTechniques = false;         ///< asked for all that the bundle can do
+    bool reference = false;             ///< asked for the ray-traced picture
     std::vector<EnvironmentArgument> environments;
     EnvironmentOptions environmentOptions;
     TableOptions tables;
@@ -43,11 +50,16 @@ struct RelightArguments {
     std::optional<double> exposureStops;  ///< empty: chosen from the picture
 
     void addTo(CommandLine& line);
+    /// Whether a picture of the technique was asked for, not only its error.
+    bool isAsked(Technique technique) const;
     /// Checks and parses the texts.
     /// @throws UsageError
     void finish();
     /// From --eye and --target, or around the scene by --azimuth, --elevation and --distance.
     Camera camera(const Bounds& bounds) const;
+
+  private:
+    void parseTechniques();
 };
 
 }  // namespace prt::tools

@@ -1,5 +1,9 @@
-// Irradiance of what is seen: E_c = Σ_i k_i T_ci(n) (+ mean_c(n) for PCA), k the coefficients at the point (SH
-// of visibility, or PCA weights), T the table at the shading normal. [IwanickiSloan2012, Sec. 3]
+// Irradiance of what is seen, k the coefficients at the point, n the shading normal.
+//   (none), WITH_MEAN  E_c = Σ_i k_i T_ci(n) (+ mean_c(n)), k SH of visibility or PCA weights, T a table
+//   PRECONVOLVED       E_c = k T_c(n), k ambient occlusion, T unoccluded irradiance
+//   UNIFORM_PRODUCTS   E_c = Σ_j f_j(n) (P_jc,mean + Σ_i k_i P_jci), f functions of the clamped cosine
+//   TWO_BANDS          E_c = ∫ V L_c max(0, n·ω) dω, V and L of two bands
+// [IwanickiSloan2012, Sec. 3 to 5]
 layout(binding = 0) uniform sampler2D places;
 layout(binding = 1) uniform sampler2D normals;
 layout(binding = 2) uniform sampler2D albedos;
@@ -89,20 +93,80 @@ vec3 sunlight(Points points, vec3 normal) {
     return sum;
 }
 
-void main() {
-    const ivec2 pixel = ivec2(gl_FragCoord.xy);
-    const Points points = pointsAt(pixel, texelFetch(places, pixel, 0));
-    const vec3 shadingNormal = texelFetch(normals, pixel, 0).xyz;
-    const vec3 normal = tablePoint(shadingNormal);
-    vec3 irradiance = sunlight(points, shadingNormal);
+#if defined(TWO_BANDS)
+uniform vec3 light[4];  // L(ω) = light[0] + light[1] ω.x + light[2] ω.y + light[3] ω.z
+
+/// The product of two linear functions has nine coefficients, and the bands of the cosine beyond the third do
+/// not meet it: with ∫ H = π, ∫ ω H = 2π/3 n and ∫ ω ωᵀ H = π/4 (1 + n nᵀ) it is convolved without its
+/// coefficients.
+vec3 irradianceAt(Points points, vec3 n) {
+    const vec4 k = valuesAt(coefficients, points, 0);
+    const float constant = sqrt(1.0 / (4.0 * kPi)) * k.x;
+    const vec3 gradient = sqrt(3.0 / (4.0 * kPi)) * vec3(-k.w, -k.y, k.z);
+    const float along = dot(gradient, n);
+    const vec3 lightAlong = light[1] * n.x + light[2] * n.y + light[3] * n.z;
+    const vec3 both = light[1] * gradient.x + light[2] * gradient.y + light[3] * gradient.z;
+    return constant * (kPi * light[0] + (2.0 / 3.0 * kPi) * lightAlong) +
+           along * ((2.0 / 3.0 * kPi) * light[0] + (0.25 * kPi) * lightAlong) + (0.25 * kPi) * both;
+}
+#elif defined(UNIFORM_PRODUCTS)
+const int kLayers = (VECTORS + 3) / 4;
+uniform vec3 products[COSINE_FUNCTIONS * (VECTORS + 1)];  // scales of Y and bands of the cosine are in them
+
+// Loops, although llvmpipe reads uniforms faster where their index is a constant: unrolled, 24 vectors take it
+// minutes to compile.
+vec3 productAt(int function, vec4 weights[kLayers]) {
+    const int first = function * (VECTORS + 1);
+    vec3 sum = products[first + VECTORS];
+    for (int i = 0; i < VECTORS; ++i) sum += weights[i / 4][i % 4] * products[first + i];
+    return sum;
+}
+
+/// SH by recurrence along l for every m; bands 3, 5, 7 … of a clamped cosine are zero.
+vec3 irradianceAt(Points points, vec3 n) {
+    vec4 weights[kLayers];
+    for (int i = 0; i < kLayers; ++i) weights[i] = valuesAt(coefficients, points, i);
+    vec3 sum = vec3(0.0);
+    vec2 turned = vec2(1.0, 0.0);  // sin^m θ (cos mφ, sin mφ)
+    int at = 0;
+    for (int m = 0; m < COSINE_BANDS; ++m) {
+        float before = 0.0, legendre = 1.0;
+        for (int l = m; l < COSINE_BANDS; ++l) {
+            if (l <= 1 || l % 2 == 0) {
+                sum += legendre * turned.x * productAt(at++, weights);
+                if (m > 0) sum += legendre * turned.y * productAt(at++, weights);
+            }
+            const float next = (float(2 * l + 1) * n.z * legendre - float(l + m) * before) / float(l - m + 1);
+            before = legendre;
+            legendre = next;
+        }
+        turned = vec2(turned.x * n.x - turned.y * n.y, turned.x * n.y + turned.y * n.x);
+    }
+    return sum;
+}
+#elif defined(PRECONVOLVED)
+vec3 irradianceAt(Points points, vec3 n) { return valuesAt(coefficients, points, 0).r * tableAt(tablePoint(n), 0).rgb; }
+#else
+vec3 irradianceAt(Points points, vec3 n) {
+    const vec3 normal = tablePoint(n);
+    vec3 sum = vec3(0.0);
 #ifdef WITH_MEAN
-    irradiance += tableAt(normal, 3 * layers).rgb;
+    sum += tableAt(normal, 3 * layers).rgb;
 #endif
     for (int i = 0; i < layers; ++i) {
         const vec4 k = valuesAt(coefficients, points, i);
-        irradiance += vec3(dot(k, tableAt(normal, i)), dot(k, tableAt(normal, layers + i)),
-                           dot(k, tableAt(normal, 2 * layers + i)));
+        sum += vec3(dot(k, tableAt(normal, i)), dot(k, tableAt(normal, layers + i)),
+                    dot(k, tableAt(normal, 2 * layers + i)));
     }
+    return sum;
+}
+#endif
+
+void main() {
+    const ivec2 pixel = ivec2(gl_FragCoord.xy);
+    const Points points = pointsAt(pixel, texelFetch(places, pixel, 0));
+    const vec3 normal = texelFetch(normals, pixel, 0).xyz;
+    const vec3 irradiance = sunlight(points, normal) + irradianceAt(points, normal);
     // Measured as it is; shown without the negative lobes that truncation leaves in the dark.
     outIrradiance = vec4(irradiance, 1.0);
     outRadiance = vec4(texelFetch(albedos, pixel, 0).rgb / kPi * irradiance, 1.0);

@@ -1,0 +1,76 @@
+// What one technique draws with: textures, uniforms and shaders. Internal.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "precompute/io/table_file.h"
+#include "precompute/io/visibility_file.h"
+#include "precompute/math/environment.h"
+#include "runtime/coefficient_images.h"
+#include "runtime/gl_context.h"
+#include "runtime/gl_objects.h"
+#include "runtime/technique.h"
+
+namespace prt {
+
+/// Coefficients of the points, and the light as the technique takes it. Needs the context to be current.
+class TechniqueData {
+  public:
+    /// For a technique that reads visibility: Unc draws all bands of the map, Sh2 needs two, PreconvolvedAo
+    /// takes the ambient occlusion.
+    /// @throws InputError  larger than OpenGL takes
+    TechniqueData(const GlContext& context, Technique technique, const VisibilityMap& visibility);
+    /// For a technique that reads weights: all vectors of the map.
+    /// @throws InputError  larger than OpenGL takes
+    TechniqueData(const GlContext& context, Technique technique, const PcaMap& pca);
+
+    /// Light of a technique that looks it up by the normal.
+    /// @throws InputError  kind, order or number of layers is not what the coefficients need
+    void setTable(const NormalTable& table);
+    /// Light of a technique that evaluates it at every pixel: Sh2 takes two bands of it, PcaUniform
+    /// shOrder() + cosineBands − 1.
+    /// @throws InputError  more uniforms than OpenGL takes
+    void setLight(const EnvironmentSh& light, int cosineBands);
+
+    /// @throws InputError  no light was set
+    void checkLight() const;
+    int shOrder() const { return shOrder_; }
+    /// Vectors that weights belong to, without the weights; empty for techniques that read visibility.
+    const PcaMap& basis() const { return basis_; }
+
+    /// Uses the program, with uniforms of the technique set and its textures bound to units 4 and 5.
+    const GlProgram& use() const;
+
+  private:
+    void upload(const PointGrid& grid, int perPoint, std::span<const float> values, const char* where);
+    void chooseProgram(const std::string& defines);
+    void setProducts(const EnvironmentSh& light, int cosineBands);
+    void setTwoBands(const EnvironmentSh& light);
+
+    const GlContext& context_;
+    Technique technique_;
+    CoefficientImage coefficients_;
+    TableImage table_;
+    int shOrder_ = 0, perPoint_ = 0;
+    PcaMap basis_;  // without weights
+    std::string defines_;
+    std::map<std::string, GlProgram> programs_;  // by further defines
+    const GlProgram* program_ = nullptr;         // that of the light
+};
+
+/// Whether the technique looks light up by the normal; else its light is uniforms.
+bool usesTable(Technique technique);
+/// Kind of that table.
+TableKind tableKindOf(Technique technique);
+
+/// Product of every vector and the light, convolved with the clamped cosine, for the recurrence of
+/// runtime/shaders/light.frag: irradiance is Σ_j f_j(n) Σ_m w_m P_jm, w 1 for the mean, over functions f_j =
+/// z-polynomial × cos or sin of mφ.
+/// @param light  of shOrder + cosineBands − 1 bands or more
+/// @return [cosineFunctionCount(cosineBands)×(M + 1)], the mean last
+/// @source [IwanickiSloan2012, Sec. 4, alternative]
+std::vector<Vec3f> uniformProducts(const EnvironmentSh& light, const PcaMap& basis, int cosineBands);
+
+}  // namespace prt

@@ -1,0 +1,236 @@
+// Every technique against a slow evaluation of its formula on the CPU, with light made by LiveLight as a user
+// has it.
+#include <cmath>
+#include <numbers>
+
+#include "compress/reduce_visibility.h"
+#include "precompute/base/error.h"
+#include "precompute/math/clamped_cosine.h"
+#include "precompute/math/sh.h"
+#include "precompute/math/sh_product.h"
+#include "runtime/renderer.h"
+#include "test_scenes.h"
+
+namespace prt {
+namespace {
+
+using namespace test;
+
+constexpr RenderOptions kSmall{48, 40, true};
+constexpr int kOrder = 4;
+
+Camera facing() {
+    Camera camera;
+    camera.eye = {1, 2, 3};
+    return camera;
+}
+
+// A dark sky with a bright coloured patch.
+Environment patchedSky() {
+    Environment sky;
+    sky.name = "patch";
+    sky.image = {64, 32, 3, std::vector<float>(size_t(64 * 32 * 3), 0.2f)};
+    for (int y = 6; y < 12; ++y)
+        for (int x = 20; x < 30; ++x) {
+            sky.image.at(x, y)[0] = 9;
+            sky.image.at(x, y)[1] = 5;
+            sky.image.at(x, y)[2] = 2;
+        }
+    return sky;
+}
+
+// ∫ (expansion·Y) L max(0, n·ω) dω: product of all bands, then so many bands of the cosine.
+double convolved(std::span<const float> expansion, std::span<const float> light, int cosineBands,
+                 const Vec3f& normal) {
+    const std::vector<float> product = shProduct(expansion, light, cosineBands);
+    std::vector<float> cosine(product.size());
+    evalClampedCosineSh(cosineBands, normal, cosine);
+    double sum = 0;
+    for (size_t i = 0; i < product.size(); ++i) sum += double(product[i]) * double(cosine[i]);
+    return sum;
+}
+
+class Techniques : public testing::TestWithParam<PointDomain> {
+  protected:
+    void SetUp() override {
+        const PointGrid grid =
+            GetParam() == PointDomain::Texel ? texelGrid(2, 2) : vertexGrid(scene_.vertexCount());
+        // One value at all points: the lookup of points is tested elsewhere.
+        std::vector<float> v = hemisphereSh(kOrder, Vec3f(0.6f, 0.64f, 0.48f));
+        for (size_t i = 0; i < v.size(); ++i) v[i] += 0.02f * float(i % 5) - 0.04f;
+        visibility_ = uniformVisibility(grid, kOrder, v);
+        visibility_.ao.assign(grid.count, 0.37f);
+        pca_ = reduceComponents(completePca(visibility_, 0.05f), visibility_.normals, 6);
+    }
+    // Largest |E − expected(normal, colour)| over the picture, as a share of the largest E.
+    template <class Expected>
+    double worst(Renderer& renderer, Technique technique, const Expected& expected) {
+        const SurfaceImage surface = renderer.surface(facing(), kSmall);
+        const RenderedFrame frame = renderer.render(facing(), technique, kSmall);
+        double difference = 0, largest = 0;
+        size_t compared = 0;
+        for (size_t i = 0; i < surface.pixels(); i += 3) {
+            if (surface.triangle[i] == kNoTriangle) continue;
+            for (size_t c = 0; c < 3; ++c) {
+                const double truth = expected(surface.shadingNormal[i], c);
+                largest = std::max(largest, std::abs(truth));
+                difference =
+                    std::max(difference, std::abs(double(frame.irradiance.pixels[3 * i + c]) - truth));
+            }
+            ++compared;
+        }
+        EXPECT_GT(compared, 100u);
+        return difference / largest;
+    }
+    std::vector<float> reconstruction() const {
+        std::vector<float> v = pca_.mean;
+        for (size_t m = 0; m < size_t(pca_.components); ++m)
+            for (size_t i = 0; i < v.size(); ++i) v[i] += pca_.weights[m] * pca_.basis[m * v.size() + i];
+        return v;
+    }
+
+    GlContext context_;
+    Scene scene_ = sphere({0, 0, 0}, 1, 24);
+    VisibilityMap visibility_;
+    PcaMap pca_;
+    std::vector<Environment> environments_ = {patchedSky()};
+};
+
+// Tables of 512 texels interpolate to 1e-4 (measured: 128, 256 and 512 texels give 9.5e-4, 3.3e-4 and less
+// than 1e-4); what is computed at every pixel is exact to float.
+TEST_P(Techniques, EqualTheirFormulas) {
+    TableOptions options;
+    options.size = 512;
+    options.layout = "octahedral";
+    const LiveLight live(environments_, kOrder, options);
+    const std::vector<double> weights = {1.0};
+    const double turn = 0.7;
+    const EnvironmentSh light = live.blend(weights, turn);
+    Renderer renderer(context_, scene_, &visibility_, &pca_);
+    const Technique unc3{TechniqueKind::Unc, 3};
+    const VisibilityMap three = reduceOrder(visibility_, 3), two = reduceOrder(visibility_, 2);
+    renderer.add(unc3, three);
+    renderer.add(Technique::Sh2, two);
+    renderer.add(Technique::PreconvolvedAo, visibility_);
+    renderer.add(Technique::PcaUniform, pca_);
+    for (const Technique technique : {Technique::Unc, unc3, Technique::Pca, Technique::PcaUniform,
+                                      Technique::Sh2, Technique::PreconvolvedAo})
+        renderer.setLight(technique, live, weights, turn);
+
+    const std::vector<float> v(visibility_.coefficients.begin(), visibility_.coefficients.begin() + 16);
+    const auto table = [&](const std::vector<float>& expansion) {
+        return [&, expansion](const Vec3f& n, size_t c) {
+            return convolved(expansion, light.rgb[c], kTableCosineBands, n);
+        };
+    };
+    EXPECT_LT(worst(renderer, Technique::Unc, table(v)), 1e-4);
+    EXPECT_LT(worst(renderer, unc3, table({v.begin(), v.begin() + 9})), 1e-4);
+    EXPECT_LT(worst(renderer, Technique::Pca, table(reconstruction())), 1e-4);
+    EXPECT_LT(worst(renderer, Technique::PcaUniform, table(reconstruction())), 1e-5);
+    EXPECT_LT(worst(renderer, Technique::Sh2,
+                    [&](const Vec3f& n, size_t c) {
+                        return convolved(std::span(v).first(4), std::span(light.rgb[c]).first(4), 3, n);
+                    }),
+              1e-5);
+    EXPECT_LT(worst(renderer, Technique::PreconvolvedAo,
+                    [&](const Vec3f& n, size_t c) {
+                        const float open[] = {std::sqrt(4 * std::numbers::pi_v<float>)};
+                        return 0.37 * convolved(open, light.rgb[c], light.shOrder, n);
+                    }),
+              1e-4);
+}
+
+// The table's bilinear error falls with the square of its size; between 16 and 64 texels at least by 6.
+TEST_P(Techniques, UniformProductsEqualTables) {
+    std::vector<double> differences;
+    for (const int size : {16, 32, 64}) {
+        TableOptions options;
+        options.size = size;
+        const LiveLight live(environments_, kOrder, options);
+        Renderer renderer(context_, scene_, nullptr, &pca_);
+        renderer.add(Technique::PcaUniform, pca_);
+        for (const Technique technique : {Technique::Pca, Technique::PcaUniform})
+            renderer.setLight(technique, live, {1.0}, 0);
+        const FloatImage a = renderer.render(facing(), Technique::PcaUniform, kSmall).irradiance,
+                         b = renderer.render(facing(), Technique::Pca, kSmall).irradiance;
+        double error = 0, square = 0;
+        for (size_t i = 0; i < a.pixels.size(); ++i) {
+            error += std::pow(double(a.pixels[i]) - double(b.pixels[i]), 2);
+            square += std::pow(double(a.pixels[i]), 2);
+        }
+        differences.push_back(std::sqrt(error / square));
+    }
+    EXPECT_GT(differences[0], differences[1]);
+    EXPECT_LT(differences[1], 1.3e-3);
+    EXPECT_LT(differences[2], differences[0] / 6);
+}
+
+TEST_P(Techniques, PaperVariantHasThreeBandsOfTheCosine) {
+    TableOptions options;
+    options.variant = "paper";
+    const LiveLight live(environments_, kOrder, options);
+    Renderer renderer(context_, scene_, nullptr, &pca_);
+    renderer.add(Technique::PcaUniform, pca_);
+    renderer.setLight(Technique::PcaUniform, live, {1.0}, 0);
+    const EnvironmentSh light = live.blend({1.0}, 0);
+    EXPECT_LT(
+        worst(renderer, Technique::PcaUniform,
+              [&](const Vec3f& n, size_t c) { return convolved(reconstruction(), light.rgb[c], 3, n); }),
+        1e-5);
+}
+
+INSTANTIATE_TEST_SUITE_P(Domains, Techniques, testing::Values(PointDomain::Texel, PointDomain::Vertex),
+                         [](const auto& domain) { return std::string(pointDomainName(domain.param)); });
+
+TEST(TechniqueErrors, WhatWasNotAddedOrDoesNotFit) {
+    GlContext context;
+    const Scene scene = quad({0, 0, 0}, {1, 0, 0}, {0, 1, 0});
+    const VisibilityMap visibility = noisyVisibility(texelGrid(4, 4), 4, 1);
+    Renderer renderer(context, scene, &visibility, nullptr);
+    const LiveLight live({patchedSky()}, 4, {});
+    EXPECT_THROW(renderer.setLight(Technique::Sh2, live, {1.0}, 0), InputError);
+    EXPECT_THROW(renderer.add(Technique{TechniqueKind::Unc, 3}, visibility), InputError);
+    EXPECT_THROW(renderer.add(Technique::Sh2, visibility), InputError);
+    renderer.add(Technique::PreconvolvedAo, visibility);
+    EXPECT_THROW(renderer.render({}, Technique::PreconvolvedAo, kSmall), InputError);
+    EXPECT_THROW(renderer.setTable(Technique::PreconvolvedAo,
+                                   lightCosineTable([](const Vec3d&) { return Vec3f(1, 1, 1); }, 4, 8)),
+                 InputError);
+    // 100 vectors and 69 functions are more uniforms than anything takes.
+    const PcaMap complete = completePca(noisyVisibility(texelGrid(2, 2), 10, 1), 0);
+    renderer.add(Technique::PcaUniform, complete);
+    const LiveLight tenBands({patchedSky()}, 10, {});
+    EXPECT_THROW(renderer.setLight(Technique::PcaUniform, tenBands, {1.0}, 0), InputError);
+}
+
+TEST(TechniqueNames, AreReadBack) {
+    for (const Technique technique : listedTechniques()) {
+        EXPECT_EQ(techniqueFromName(techniqueName(technique)), technique);
+        EXPECT_FALSE(techniqueSummary(technique).empty());
+    }
+    EXPECT_EQ(techniqueFromName("pca100"), (Technique{TechniqueKind::Pca, 100}));
+    for (const char* name :
+         {"", "unc0", "unc03", "unc11", "pca101", "pca-uniform4", "sh3", "Unc", "unc6 ", "pca-4"})
+        EXPECT_FALSE(techniqueFromName(name)) << name;
+}
+
+TEST(TechniqueNames, NeedsAndCosts) {
+    const TechniqueSource all{6, 6, 16}, bare{4, 0, 0};
+    EXPECT_TRUE(canDraw({TechniqueKind::Unc, 6}, all));
+    EXPECT_FALSE(canDraw({TechniqueKind::Unc, 6}, bare));
+    EXPECT_FALSE(canDraw({TechniqueKind::Pca, 20}, all));
+    EXPECT_FALSE(canDraw(Technique::PcaUniform, bare));
+    EXPECT_TRUE(canDraw(Technique::Sh2, bare));
+    EXPECT_FALSE(canDraw(Technique::Sh2, {1, 0, 0}));
+    // The paper's 9 + 27 fetches.
+    EXPECT_EQ(techniqueCost({TechniqueKind::Unc, 6}, all, PointDomain::Texel, 12).fetches, 36);
+    EXPECT_EQ(techniqueCost(Technique::Pca, all, PointDomain::Texel, 12).fetches, 17);
+    EXPECT_EQ(techniqueCost(Technique::Pca, all, PointDomain::Vertex, 12).fetches, 25);
+    EXPECT_EQ(techniqueCost(Technique::PcaUniform, all, PointDomain::Texel, 12).uniforms, 69 * 17);
+    EXPECT_EQ(techniqueCost(Technique::Sh2, all, PointDomain::Texel, 12).fetches, 1);
+    EXPECT_EQ(techniqueCost(Technique::PreconvolvedAo, all, PointDomain::Texel, 12).fetches, 2);
+    EXPECT_EQ(cosineFunctionCount(3), 9);
+}
+
+}  // namespace
+}  // namespace prt

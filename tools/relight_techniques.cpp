@@ -1,0 +1,166 @@
+// Wires stage 2's reductions to the runtime's techniques [IwanickiSloan2012, Sec. 3 to 5].
+#include "tools/relight_techniques.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numbers>
+
+#include "compress/reduce_visibility.h"
+#include "compress/tabulate_job.h"
+#include "precompute/base/log.h"
+#include "precompute/io/glb.h"
+
+namespace prt::tools {
+namespace {
+
+bool isPart(Technique technique) { return technique.kind == TechniqueKind::Pca && technique.number > 0; }
+
+// Those that were named and those that a comparison always has.
+std::vector<Technique> wantedTechniques(const RelightArguments& arguments, bool pcaIsCurrent) {
+    std::vector<Technique> wanted = arguments.techniques;
+    if (arguments.compareReference || arguments.allTechniques) wanted.push_back(Technique::Unc);
+    if ((arguments.compareReference || arguments.allTechniques) && pcaIsCurrent)
+        wanted.push_back(Technique::Pca);
+    return wanted;
+}
+
+// In the order of the list; what is not listed comes last.
+std::vector<Technique> inListedOrder(const std::vector<Technique>& wanted) {
+    std::vector<Technique> ordered;
+    const auto take = [&](Technique technique) {
+        if (std::ranges::find(ordered, technique) == ordered.end()) ordered.push_back(technique);
+    };
+    for (const Technique technique : listedTechniques())
+        if (std::ranges::find(wanted, technique) != wanted.end()) take(technique);
+    for (const Technique technique : wanted) take(technique);
+    return ordered;
+}
+
+}  // namespace
+
+TechniqueSource RelightData::source() const {
+    return {visibility ? visibility->shOrder : 0, pca ? pca->shOrder : 0, pca ? pca->components : 0};
+}
+
+PointDomain RelightData::domain() const {
+    return visibility ? visibility->grid.domain : pca ? pca->grid.domain : PointDomain::Texel;
+}
+
+RelightData loadRelightData(const RelightArguments& arguments) {
+    RelightData data{Bundle::open(arguments.bundlePath), {}, {}, {}, {}, {}, 0, {}};
+    const std::string precompute = fmt::format("prt precompute MESH -o {}", arguments.bundlePath);
+    data.bundle.require("mesh.glb", precompute);
+    data.scene = readGltf(data.bundle.pathOf("mesh.glb").string());
+
+    const bool hasPca = data.bundle.find("pca.exr") != nullptr;
+    const bool pcaIsCurrent = hasPca && data.bundle.staleReason("pca.exr", false).empty();
+    std::vector<Technique> wanted = wantedTechniques(arguments, pcaIsCurrent);
+    const bool all = arguments.allTechniques;
+    // Weights of fewer vectors are fitted about the normals, which are with the visibility.
+    if (all || std::ranges::any_of(wanted, [](Technique t) { return readsVisibility(t) || isPart(t); })) {
+        data.bundle.require("visibility.exr", precompute);
+        data.visibility = readVisibilityFile(data.bundle.pathOf("visibility.exr").string());
+        data.shOrder = data.visibility->shOrder;
+    }
+    // A comparison measures what is there; asking for pca itself insists on it.
+    if (std::ranges::any_of(wanted, [](Technique t) { return !readsVisibility(t); })) {
+        data.bundle.require("pca.exr", fmt::format("prt compress {}", arguments.bundlePath));
+        data.pca = readPcaFile(data.bundle.pathOf("pca.exr").string());
+        data.shOrder = data.pca->shOrder;
+    } else if ((arguments.compareReference || all) && hasPca) {
+        logWarning("pca.exr is stale and is not compared; renew it with: prt compress " +
+                   arguments.bundlePath);
+    }
+    if (all)
+        for (const Technique technique : listedTechniques())
+            if (canDraw(technique, data.source())) wanted.push_back(technique);
+    for (const Technique technique : wanted) checkTechnique(technique, data.source());
+    data.techniques = inListedOrder(wanted);
+
+    for (const EnvironmentArgument& argument : arguments.environments) {
+        data.environments.push_back(loadEnvironment(argument.source, arguments.environmentOptions));
+        data.weights.push_back(argument.weight);
+    }
+    return data;
+}
+
+RelightTechniques::RelightTechniques(const RelightArguments& arguments, const RelightData& data)
+    : arguments_(arguments), data_(data), rotationRad_(arguments.rotateDeg * std::numbers::pi / 180) {}
+
+Technique RelightTechniques::drawn(Technique technique) const {
+    const TechniqueSource source = data_.source();
+    const int all = technique.kind == TechniqueKind::Unc ? source.shOrder : source.components;
+    if (technique.number == all) technique.number = 0;
+    return technique;
+}
+
+void RelightTechniques::addTo(Renderer& renderer) const {
+    for (const Technique named : data_.techniques) {
+        const Technique technique = drawn(named);
+        if (readsVisibility(technique)) {
+            const int bands = technique.kind == TechniqueKind::Sh2 ? 2 : technique.number;
+            if (bands > 0)
+                renderer.add(technique, reduceOrder(*data_.visibility, bands));
+            else
+                renderer.add(technique, *data_.visibility);
+        } else if (technique.number > 0) {
+            renderer.add(technique,
+                         reduceComponents(*data_.pca, data_.visibility->normals, technique.number));
+        } else {
+            renderer.add(technique, *data_.pca);
+        }
+    }
+}
+
+const char* RelightTechniques::setLight(Renderer& renderer, Technique technique,
+                                        const std::vector<double>& weights) {
+    const Technique used = drawn(technique);
+    if (used == Technique::Unc || used == Technique::Pca) {
+        const TableKind kind = used == Technique::Unc ? TableKind::LightCosine : TableKind::TripleProduct;
+        if (const auto table = blendStored(kind, weights)) {
+            renderer.setTable(used, *table);
+            return "bundle";
+        }
+    }
+    if (!live_) live_.emplace(data_.environments, data_.shOrder, arguments_.tables);
+    renderer.setLight(used, *live_, weights, rotationRad_);
+    return "built";
+}
+
+std::optional<NormalTable> RelightTechniques::blendStored(TableKind kind,
+                                                          const std::vector<double>& weights) const {
+    if (rotationRad_ != 0) return std::nullopt;
+    std::optional<NormalTable> blend;
+    for (size_t e = 0; e < weights.size(); ++e) {
+        if (weights[e] == 0) continue;
+        auto table = stored(kind, data_.environments[e]);
+        if (!table) return std::nullopt;
+        for (float& value : table->values) value *= float(weights[e]);
+        if (!blend) {
+            blend = std::move(table);
+            continue;
+        }
+        if (blend->layers != table->layers) return std::nullopt;
+        for (size_t i = 0; i < blend->values.size(); ++i) blend->values[i] += table->values[i];
+    }
+    return blend;
+}
+
+std::optional<NormalTable> RelightTechniques::stored(TableKind kind, const Environment& environment) const {
+    const std::string name = tableFileName(environment.name, tableKindName(kind), arguments_.tables.layout);
+    if (!data_.bundle.find(name) || !data_.bundle.staleReason(name, false).empty()) return std::nullopt;
+    NormalTable table = readTableFile(data_.bundle.pathOf(name).string());
+    const TableOptions& wanted = arguments_.tables;
+    const auto is = [&](const char* attribute, const std::string& value) {
+        const auto found = table.attributes.find(attribute);
+        return found != table.attributes.end() && found->second == value;
+    };
+    const bool fits = table.size == wanted.size && table.shOrder == data_.shOrder &&
+                      is("environmentHash", environment.contentHash) &&
+                      is("cosineBands", std::to_string(wanted.cosineBands())) &&
+                      is("window", wanted.window) && is("extractSun", wanted.extractSun ? "yes" : "no");
+    return fits ? std::optional(std::move(table)) : std::nullopt;
+}
+
+}  // namespace prt::tools

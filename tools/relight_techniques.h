@@ -1,0 +1,67 @@
+// What prt relight draws: the data of a bundle that the techniques asked for need, and their light.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "precompute/io/bundle.h"
+#include "precompute/io/environment_file.h"
+#include "precompute/io/scene.h"
+#include "precompute/io/table_file.h"
+#include "precompute/io/visibility_file.h"
+#include "runtime/live_light.h"
+#include "runtime/renderer.h"
+#include "runtime/technique.h"
+#include "tools/relight_arguments.h"
+
+namespace prt::tools {
+
+/// What is read from the bundle for one run.
+struct RelightData {
+    Bundle bundle;
+    Scene scene;
+    std::optional<VisibilityMap> visibility;
+    std::optional<PcaMap> pca;
+    std::vector<Environment> environments;
+    std::vector<double> weights;
+    int shOrder = 0;                    ///< of visibility, or of the vectors
+    std::vector<Technique> techniques;  ///< to be drawn, in the order in which they are listed
+
+    TechniqueSource source() const;
+    PointDomain domain() const;
+};
+
+/// Reads what the techniques need. Those are the ones named; all that the bundle can do where it was "all";
+/// and unc, and pca where it is current, in a comparison.
+/// @throws InputError  a technique that was named cannot be drawn
+RelightData loadRelightData(const RelightArguments& arguments);
+
+/// Adds the techniques to a renderer and gives each its light: tables from the bundle when all of them are
+/// there, current and of the right environments; else made here.
+class RelightTechniques {
+  public:
+    /// Arguments must outlive the object.
+    RelightTechniques(const RelightArguments& arguments, const RelightData& data);
+
+    /// Reduces visibility and weights to what each technique takes, and uploads them.
+    void addTo(Renderer& renderer) const;
+    /// @param weights  [environments]
+    /// @return "bundle" or "built": where its tables came from
+    const char* setLight(Renderer& renderer, Technique technique, const std::vector<double>& weights);
+    /// The name under which the renderer has a technique: asking for all bands or vectors by their number is
+    /// asking for all.
+    Technique drawn(Technique technique) const;
+    double rotationRad() const { return rotationRad_; }
+
+  private:
+    std::optional<NormalTable> blendStored(TableKind kind, const std::vector<double>& weights) const;
+    std::optional<NormalTable> stored(TableKind kind, const Environment& environment) const;
+
+    const RelightArguments& arguments_;
+    const RelightData& data_;
+    double rotationRad_;
+    std::optional<LiveLight> live_;
+};
+
+}  // namespace prt::tools
