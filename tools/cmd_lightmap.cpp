@@ -1,7 +1,15 @@
 // prt lightmap: light of one environment with its bounces, for a bundle.
 #include <fmt/format.h>
 
+#include <filesystem>
+#include <numbers>
+#include <span>
+
 #include "compress/renewal_command.h"
+#include "precompute/base/atomic_file.h"
+#include "precompute/base/error.h"
+#include "precompute/io/bundle.h"
+#include "precompute/io/lightmap_file.h"
 #include "precompute/visibility/lightmap_job.h"
 #include "tools/command_line.h"
 #include "tools/commands.h"
@@ -30,11 +38,35 @@ void print(const LightmapReport& report) {
                100 * report.relativeError);
 }
 
+void checkImageName(const std::string& file) {
+    const std::string extension = std::filesystem::path(file).extension().string();
+    if (!file.empty() && extension != ".png" && extension != ".exr")
+        throw UsageError("--image", fmt::format("'{}' is no picture that can be written", file),
+                         "name a .png or .exr file");
+}
+
+// Radiance of white surfaces along the geometric normals, as a picture of the atlas (or of rows of vertices).
+void writeImage(const std::string& file, const std::string& bundlePath, const std::string& lightmap,
+                double exposureStops) {
+    const Bundle bundle = Bundle::open(bundlePath);
+    FloatImage image =
+        lightmapIrradiance(readLightmapFile(bundle.pathOf(lightmap).string()),
+                           readVisibilityFile(bundle.pathOf("visibility.exr").string()).normals);
+    for (float& value : image.pixels) value /= std::numbers::pi_v<float>;
+    if (std::filesystem::path(file).extension() == ".exr") {
+        writeExrImage(file, image);
+        return;
+    }
+    const std::vector<uint8_t> png = encodePng(toDisplay(image, exposureStops));
+    writeFileAtomically(file, std::as_bytes(std::span(png)));
+}
+
 }  // namespace
 
 void runLightmapCommand(int argc, char** argv) {
     LightmapSettings settings;
-    std::string source, projection = "irradiance";
+    std::string source, projection = "irradiance", image;
+    double exposureStops = 0;
     EnvironmentOptions reading;
     CommandLine line(
         "prt lightmap",
@@ -51,14 +83,19 @@ void runLightmapCommand(int argc, char** argv) {
                  "over the hemisphere of each point, and as many towards the light");
     line.choice("--projection", projection, {"irradiance", "plain"},
                 "expansion that irradiance sees best, or the plain one");
+    line.text("--image", image, "FILE",
+              "also writes the radiance of white surfaces in the atlas: .png (sRGB) or .exr (linear)");
+    line.real("--exposure", exposureStops, -64, 64, "brightness of a .png, stops");
     addEnvironmentOptions(line, reading);
     line.flag("--force", settings.force, "also where the bundle has just that already");
     if (!line.parse(argc, argv)) return;
 
+    checkImageName(image);
     if (projection == "plain") settings.options.projection = kPlainProjection;
     settings.command = renewal(settings, source, reading);
     const LightmapReport result = runLightmap(settings, loadEnvironment(source, reading));
     if (line.common().json != "-") print(result);
+    if (!image.empty()) writeImage(image, settings.bundlePath, result.file, exposureStops);
     Report report;
     report.set("bundle", settings.bundlePath)
         .set("file", result.file)

@@ -4,7 +4,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <numeric>
 
 #include "precompute/base/check.h"
 #include "precompute/base/error.h"
@@ -13,6 +15,7 @@
 #include "precompute/io/exr_file.h"
 #include "precompute/io/point_channels.h"
 #include "precompute/io/projection_attributes.h"
+#include "precompute/math/clamped_cosine.h"
 
 namespace prt {
 namespace {
@@ -37,6 +40,24 @@ float requireFloat(const ExrAttributes& attributes, const char* name, const std:
 }
 
 }  // namespace
+
+FloatImage lightmapIrradiance(const Lightmap& map, std::span<const Vec3f> normals) {
+    PRT_CHECK_EQ(normals.size(), map.grid.count);
+    PRT_CHECK_EQ(map.coefficients.size(), map.grid.count * kColumns);
+    FloatImage image{map.grid.width, map.grid.height, 3, {}};
+    image.pixels.assign(gridPixels(map.grid) * 3, 0.0f);
+    std::array<float, kLightmapCoefficients> cosine{};
+    for (size_t k = 0; k < map.grid.count; ++k) {
+        if (normals[k] == Vec3f::Zero()) continue;
+        evalClampedCosineSh(kLightmapShOrder, normals[k], cosine);
+        for (size_t c = 0; c < 3; ++c) {
+            const float* light = &map.coefficients[k * kColumns + c * cosine.size()];
+            const float sum = std::inner_product(cosine.begin(), cosine.end(), light, 0.0f);
+            image.pixels[3 * k + c] = std::max(sum, 0.0f);
+        }
+    }
+    return image;
+}
 
 std::string lightmapFileName(const std::string& environmentName) {
     return fmt::format("lightmaps/{}.exr", environmentFileStem(environmentName));

@@ -2,9 +2,11 @@
 #pragma once
 
 #include <map>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "precompute/io/image.h"
 #include "precompute/io/visibility_file.h"
 
 namespace prt {
@@ -28,6 +30,12 @@ struct Lightmap {
     std::map<std::string, std::string> attributes;  ///< environmentName, environmentHash
 };
 inline constexpr int kMaxLightmapBounces = 64;
+
+/// Irradiance as a picture of the grid, 3 channels, its last row filled with zeros; 0 where there is no
+/// normal. Not negative: three bands of a strong light may dip below 0 beside it.
+/// @param normals  [count] unit or zero; of visibility.exr for the geometric ones
+/// @source [RamamoorthiHanrahan2001, Eq. 11]
+FloatImage lightmapIrradiance(const Lightmap& map, std::span<const Vec3f> normals);
 
 /// lightmaps/ENV.exr (characters outside [A-Za-z0-9_-] become '_').
 std::string lightmapFileName(const std::string& environmentName);

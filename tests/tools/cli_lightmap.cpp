@@ -3,6 +3,8 @@
 
 #include "precompute/base/error.h"
 #include "precompute/io/bundle.h"
+#include "precompute/io/exr_file.h"
+#include "precompute/io/image.h"
 #include "precompute/io/lightmap_file.h"
 #include "tests/tools/prt_process.h"
 
@@ -94,6 +96,31 @@ TEST_F(LightmapCommand, PerVertex) {
     ASSERT_EQ(run({"precompute", "box.obj", "-o", "box.prt", "--per-vertex", "--rays", "64"}).exitCode, 0);
     lightmap({"--env", "sky:overcast", "--rays", "64"});
     EXPECT_EQ(readLightmapFile(folder_ / "box.prt/lightmaps/overcast.exr").grid.domain, PointDomain::Vertex);
+}
+
+// The picture is drawn of a lightmap that is there already, too.
+TEST_F(LightmapCommand, Image) {
+    lightmap({"--env", "sky:uniform", "--rays", "32", "--bounces", "0", "--image", "e.exr"});
+    EXPECT_EQ(lightmap({"--env", "sky:uniform", "--rays", "32", "--bounces", "0", "--image", "e.png"})
+                  .at("up_to_date"),
+              true);
+    const std::string png = slurp(folder_ / "e.png");
+    const ByteImage drawn = decodeImage({reinterpret_cast<const uint8_t*>(png.data()), png.size()}, "e.png");
+    ASSERT_EQ(drawn.width, 48);
+    ASSERT_EQ(drawn.height, 48);
+    const ExrReader exr(folder_ / "e.exr");
+    std::vector<float> green(48 * 48);
+    exr.read(0, {{"G", ExrType::Float, green.data(), 4, 48 * 4}});
+    float largest = 0;
+    for (size_t i = 0; i < green.size(); ++i) {
+        largest = std::max(largest, green[i]);
+        // The curve of sRGB: within a step of 8 bits.
+        EXPECT_NEAR(toDisplay({1, 1, 3, {green[i], green[i], green[i]}}, 0).pixels[1],
+                    drawn.pixels[4 * i + 1], 1);
+    }
+    // The middle of the floor sees 0.55 of the sky, the upper rims of the walls half of it and more.
+    EXPECT_NEAR(largest, 0.58, 0.08);
+    EXPECT_EQ(run({"lightmap", "box.prt", "--env", "sky:uniform", "--image", "e.bmp"}).exitCode, 2);
 }
 
 TEST_F(LightmapCommand, BadInput) {

@@ -176,6 +176,13 @@ TEST(Lightmap, ExpansionHasTheIrradianceOfTheGeometricNormal) {
             error += std::pow(double(irradianceOf(plain.bake, v, c, box.scene.normals[v]) - e), 2);
             square += double(e) * double(e);
         }
+    Lightmap map;
+    map.grid = box.vertices;
+    map.coefficients = baked.bake.coefficients;
+    const FloatImage image = lightmapIrradiance(map, box.scene.normals);
+    ASSERT_EQ(image.pixels.size(), size_t(kVertexRowLength) * size_t(map.grid.height) * 3);
+    for (size_t i = 0; i < baked.bake.irradiance.size(); ++i)
+        EXPECT_NEAR(image.pixels[i], baked.bake.irradiance[i], 2e-4f * (1 + baked.bake.irradiance[i]));
     // Three bands of a plain expansion: 3.5 % here.
     EXPECT_LT(std::sqrt(error / square), 0.08);
     EXPECT_GT(std::sqrt(error / square), 0.005);
