@@ -102,7 +102,7 @@ std::vector<Place> findPlaces(const Egl& egl) {
                      fmt::format("EGL device {}", i),
                      hasWord(queryDevice(devices[i], EGL_EXTENSIONS), "EGL_MESA_device_software")});
     }
-    std::ranges::stable_partition(places, [](const Place& place) { return !place.software; });
+    std::stable_partition(places.begin(), places.end(), [](const Place& place) { return !place.software; });
     if (wanted < 0 && hasWord(client, "EGL_MESA_platform_surfaceless"))
         places.push_back(
             {getDisplay(EGL_PLATFORM_SURFACELESS_MESA, nullptr, nullptr), "EGL without a surface", true});
