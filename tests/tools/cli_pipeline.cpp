@@ -2,6 +2,7 @@
 // unnoticed.
 #include <cmath>
 #include <fstream>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
@@ -84,6 +85,84 @@ TEST_F(Pipeline, ErrorIsNearTheFloor) {
         EXPECT_GE(double(row.at("psnr_db")), 20);
     }
     EXPECT_EQ(json.at("rows").size(), 2u);
+}
+
+/// Rows of a comparison by technique.
+std::map<std::string, double> errorsOf(const nlohmann::json& json) {
+    std::map<std::string, double> errors;
+    for (const auto& row : json.at("rows"))
+        errors[row.at("technique").get<std::string>()] = row.at("relative_rmse").get<double>();
+    return errors;
+}
+
+const std::vector<std::string> kSideLight = {"--env",     "sky:sunset", "--size",      "96x60",
+                                             "--azimuth", "30",         "--elevation", "50"};
+
+/// Every technique the bundle can do is compared; the paper's cheap ones lose what it says they lose.
+TEST_F(Pipeline, AllTechniquesAreCompared) {
+    std::vector<std::string> arguments = {"relight", "box.prt", "--technique", "all", "--compare-reference"};
+    arguments.insert(arguments.end(), kSideLight.begin(), kSideLight.end());
+    const auto errors = errorsOf(runJson(folder_, arguments));
+    const std::vector<std::string> names = {"unc",   "unc3",  "unc4", "pca",         "pca4",           "pca8",
+                                            "pca12", "pca16", "sh2",  "pca-uniform", "preconvolved-ao"};
+    EXPECT_EQ(errors.size(), names.size());  // neither unc6 nor pca20 of four bands
+    for (const std::string& name : names) ASSERT_TRUE(errors.contains(name)) << name;
+    EXPECT_EQ(errors.at("unc4"), errors.at("unc"));
+    EXPECT_EQ(errors.at("pca16"), errors.at("pca"));
+    EXPECT_NEAR(errors.at("pca-uniform"), errors.at("pca"), 1.3e-3);
+    EXPECT_LT(errors.at("unc"), errors.at("unc3"));
+    EXPECT_LT(errors.at("pca8"), errors.at("pca4") + 0.01);
+}
+
+/// Fewer bands are those of a bake with fewer, however visibility was projected; two bands and ambient
+/// occlusion miss what six bands have under light from the side.
+TEST_F(Pipeline, FewerBandsEqualABakeWithFewer) {
+    for (const char* projection : {"plain", "irradiance"}) {
+        for (const char* order : {"6", "3"})
+            run({"precompute", "box.obj", "-o", std::string("order") + order + ".prt", "--texels", "96",
+                 "--rays", "512", "--order", order, "--projection", projection});
+        const auto picture = [&](const std::string& bundle, const std::string& technique) {
+            run({"relight", bundle, "--technique", technique, "--env", "sky:sunset", "--size", "96x60",
+                 "--no-background", "-o", "order.exr"});
+            return loadExr("order.exr");
+        };
+        const FloatImage baked = picture("order3.prt", "unc"), reduced = picture("order6.prt", "unc3");
+        EXPECT_LE(maxDifference(baked, reduced), 1e-3 * maxValue(baked)) << projection;
+        EXPECT_GE(maxDifference(baked, picture("order6.prt", "unc")), 0.02 * maxValue(baked)) << projection;
+    }
+    std::vector<std::string> arguments = {"relight",     "order6.prt",      "--technique",        "sh2",
+                                          "--technique", "preconvolved-ao", "--compare-reference"};
+    arguments.insert(arguments.end(), kSideLight.begin(), kSideLight.end());
+    const auto errors = errorsOf(runJson(folder_, arguments));
+    EXPECT_GE(errors.at("sh2"), 1.5 * errors.at("unc"));
+    EXPECT_GE(errors.at("preconvolved-ao"), 1.5 * errors.at("unc"));
+}
+
+TEST_F(Pipeline, TechniquesAreNamedByHelpAndErrors) {
+    const std::string help = runPrt(folder_, {"relight", "--help"}).out;
+    const ProcessResult unknown =
+        runPrt(folder_, {"relight", "box.prt", "--technique", "magic", "-o", "a.png", "--quiet"});
+    EXPECT_EQ(unknown.exitCode, 2);
+    for (const char* name : {"unc,", "unc3", "unc4", "unc6", "pca,", "pca4", "pca8", "pca12", "pca16",
+                             "pca20", "pca24", "pca-uniform", "sh2", "preconvolved-ao", "reference", "all"}) {
+        EXPECT_NE(help.find(name), std::string::npos) << name;
+        EXPECT_NE(unknown.err.find(name), std::string::npos) << name;
+    }
+    const ProcessResult bands =
+        runPrt(folder_, {"relight", "box.prt", "--technique", "unc6", "-o", "a.png", "--quiet"});
+    EXPECT_EQ(bands.exitCode, 3);
+    EXPECT_NE(bands.err.find("--order 6"), std::string::npos) << bands.err;
+    const ProcessResult vectors =
+        runPrt(folder_, {"relight", "box.prt", "--technique", "pca24", "-o", "a.png", "--quiet"});
+    EXPECT_EQ(vectors.exitCode, 3);
+    EXPECT_NE(vectors.err.find("--components 24"), std::string::npos) << vectors.err;
+    EXPECT_EQ(runPrt(folder_, {"relight", "box.prt", "--technique", "sh2", "--technique", "unc", "-o",
+                               "a.png", "--quiet"})
+                  .exitCode,
+              2);
+    run({"relight", "box.prt", "--technique", "sh2", "--technique", "unc", "--size", "32x20", "-o",
+         "{technique}.exr"});
+    EXPECT_GT(maxDifference(loadExr("sh2.exr"), loadExr("unc.exr")), 0);
 }
 
 TEST_F(Pipeline, BlendingIsLinear) {
