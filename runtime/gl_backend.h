@@ -21,6 +21,7 @@ class GlBackend {
     virtual void makeCurrent() const = 0;
     /// Leaves no context current on the thread; nothing where the context is the caller's.
     virtual void release() const = 0;
+    virtual void* window() const { return nullptr; }
 };
 
 /// @throws InputError  no library, no OpenGL 4.5 core
@@ -28,6 +29,9 @@ std::unique_ptr<GlBackend> makeOsMesaBackend();
 /// @param debug        asks for a debug context
 /// @throws InputError  no library, no usable device, no OpenGL 4.5 core
 std::unique_ptr<GlBackend> makeEglBackend(bool debug);
+/// @param debug        asks for a debug context
+/// @throws InputError  no display, no OpenGL 4.5 core, or a build without PRT_WITH_VIEWER
+std::unique_ptr<GlBackend> makeWindowBackend(const GlWindowOptions& options, bool debug);
 /// @param getProc      null: that of the interface whose context is current
 /// @throws InputError  none is current
 std::unique_ptr<GlBackend> makeCallerBackend(GlGetProc getProc);

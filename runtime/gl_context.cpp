@@ -43,12 +43,20 @@ void checkVersion(const GlBackend& backend) {
 
 }  // namespace
 
+#ifndef PRT_WITH_VIEWER
+std::unique_ptr<GlBackend> makeWindowBackend(const GlWindowOptions&, bool) {
+    throw InputError("OpenGL", "this build makes no windows", "build with -DPRT_WITH_VIEWER=ON");
+}
+#endif
+
 const char* glContextKindName(GlContextKind kind) {
     switch (kind) {
         case GlContextKind::OsMesa:
             return "osmesa";
         case GlContextKind::Egl:
             return "egl";
+        case GlContextKind::Window:
+            return "window";
         case GlContextKind::Current:
             break;
     }
@@ -111,11 +119,24 @@ GlContext::GlContext(std::unique_ptr<State> state) : state_(std::move(state)) {
 
 GlContext::GlContext(GlContextKind kind)
     : GlContext([kind] {
-          PRT_CHECK(kind != GlContextKind::Current);
+          PRT_CHECK(kind == GlContextKind::OsMesa || kind == GlContextKind::Egl);
           auto state = std::make_unique<State>();
           state->backend = kind == GlContextKind::Egl ? makeEglBackend(glDebugWanted()) : makeOsMesaBackend();
           return state;
       }()) {
+    listen();
+}
+
+GlContext::GlContext(const GlWindowOptions& options)
+    : GlContext([&options] {
+          auto state = std::make_unique<State>();
+          state->backend = makeWindowBackend(options, glDebugWanted());
+          return state;
+      }()) {
+    listen();
+}
+
+void GlContext::listen() {
     state_->messages.listen(gl(), glDebugWanted());
     check("creating the context");
 }
@@ -131,6 +152,8 @@ GlContext::~GlContext() = default;
 GlContextKind GlContext::kind() const { return state_->backend->kind(); }
 
 const GlFunctions& GlContext::gl() const { return state_->gl; }
+
+void* GlContext::window() const { return state_->backend->window(); }
 
 std::string GlContext::rendererName() const {
     makeCurrent();

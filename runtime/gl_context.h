@@ -17,9 +17,16 @@ using GlGetProc = GlProc (*)(const char* name);
 enum class GlContextKind {
     OsMesa,  ///< headless, in software
     Egl,     ///< headless: a GPU where there is one that may be used, else in software
+    Window,  ///< of a window, in builds with PRT_WITH_VIEWER
     Current  ///< the caller's, whatever made it
 };
-const char* glContextKindName(GlContextKind kind);  ///< "osmesa", "egl", "current"
+const char* glContextKindName(GlContextKind kind);  ///< "osmesa", "egl", "window", "current"
+
+struct GlWindowOptions {
+    int width = 1280, height = 800;  ///< of its content, in the window system's units
+    std::string title = "prt";
+    bool visible = true;  ///< a hidden one is a context on the display's GPU
+};
 
 /// The driver reset the GPU: everything in the context is lost. Make a new context, and renderers in it.
 class GlContextLost : public Error {
@@ -40,6 +47,10 @@ class GlContext {
     /// @throws InputError  the library is not there or has no OpenGL 4.5 core (says what there is)
     explicit GlContext(GlContextKind kind = GlContextKind::OsMesa);
 
+    /// Opens a window and makes its context current. On the main thread alone, as GLFW wants it.
+    /// @throws InputError  no display, no OpenGL 4.5 core, or a build without windows
+    explicit GlContext(const GlWindowOptions& options);
+
     /// Wraps the context that is current on the calling thread. It is never made current, released or
     /// destroyed here: it must be current whenever this object, or anything made in it, is used or destroyed.
     /// Drawing leaves its state as it was, see GlStateGuard.
@@ -53,6 +64,7 @@ class GlContext {
 
     GlContextKind kind() const;
     const GlFunctions& gl() const;
+    void* window() const;  ///< the GLFWwindow, for its events and to swap its buffers; null for other kinds
     std::string rendererName() const;  ///< e.g. "llvmpipe (LLVM 15.0.6, 256 bits)"
     std::string versionName() const;   ///< e.g. "4.5 (Core Profile) Mesa 22.3.6"
 
@@ -69,6 +81,7 @@ class GlContext {
   private:
     struct State;
     explicit GlContext(std::unique_ptr<State> state);
+    void listen();
     std::unique_ptr<State> state_;
 };
 

@@ -15,3 +15,6 @@ pkg_check_modules(webp REQUIRED IMPORTED_TARGET GLOBAL libwebp)
 pkg_check_modules(egl REQUIRED egl)  # headers; the library itself is loaded at run time
 find_package(tinyobjloader REQUIRED)
 find_package(Spectra REQUIRED)
+if(PRT_WITH_VIEWER)
+  find_package(glfw3 3.3 REQUIRED)
+endif()
