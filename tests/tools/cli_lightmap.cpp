@@ -33,6 +33,15 @@ class LightmapCommand : public testing::Test {
     Folder folder_;
 };
 
+TEST(LightmapHelp, HasDefaultsAndRanges) {
+    const Folder folder;
+    const ProcessResult result = runPrt(folder, {"lightmap", "--help"});
+    EXPECT_EQ(result.exitCode, 0) << result.err;
+    for (const char* text : {"--env", "--json", "--threads", "--quiet", "--force", "[0..64, default 2]",
+                             "[16..65536, default 1024]"})
+        EXPECT_NE(result.out.find(text), std::string::npos) << text << " in\n" << result.out;
+}
+
 TEST_F(LightmapCommand, WritesWhatItSaysAndDoesNothingTwice) {
     const std::vector<std::string> options = {"--env", "sky:sunset", "--rotate", "30", "--rays", "32"};
     const nlohmann::json first = lightmap(options);
