@@ -1,4 +1,4 @@
-// Fewer bands or fewer vectors of what a bundle holds: the same as if it had been made with fewer.
+// Fewer bands or fewer vectors of what a bundle holds.
 #pragma once
 
 #include <span>
@@ -23,7 +23,8 @@ VisibilityMap reduceOrder(const VisibilityMap& visibility, int shOrder);
 
 /// The leading vectors, and weights for them alone. Weights that were fitted for irradiance are fitted again,
 /// each in the metric of its normal: the fit is a projection, so that fitting what all vectors gave equals
-/// fitting the rows themselves. Plain weights are the leading ones.
+/// fitting the rows themselves. Plain weights are the leading ones. Vectors that were refined for irradiance
+/// stay those refined for the larger number: compressing anew with fewer is somewhat better.
 /// @param pca         of `components` vectors or more
 /// @param normals     [grid.count] geometric; zero where there is none
 /// @param components  1..pca.components

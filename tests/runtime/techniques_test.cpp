@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "compress/irradiance_weights.h"
 #include "compress/reduce_visibility.h"
 #include "precompute/base/error.h"
 #include "precompute/math/clamped_cosine.h"
@@ -201,6 +202,36 @@ TEST(TechniqueErrors, WhatWasNotAddedOrDoesNotFit) {
     renderer.add(Technique::PcaUniform, complete);
     const LiveLight tenBands({patchedSky()}, 10, {});
     EXPECT_THROW(renderer.setLight(Technique::PcaUniform, tenBands, {1.0}, 0), InputError);
+}
+
+// A fit is a projection: by way of ten vectors, or from the rows themselves, six get the same weights.
+// Rounding of float in systems of condition 1e4 leaves 1e-3.
+TEST(Reduction, WeightsAreThoseOfAFitOfTheRows) {
+    VisibilityMap visibility = noisyVisibility(texelGrid(8, 8), kOrder, 3);
+    for (size_t i = 0; i < visibility.normals.size(); ++i)
+        visibility.normals[i] = Vec3f(float(i % 8) - 3.5f, 2, float(i / 8) - 3.5f).normalized();
+    PcaMap all = completePca(visibility, 0.1f);
+    all.attributes["weightsFit"] = "irradiance";
+    PcaResult six;
+    six.components = 6;
+    six.mean = all.mean;
+    six.basis.assign(all.basis.begin(), all.basis.begin() + 6 * 16);
+    const std::vector<float> expected =
+        projectPcaForIrradiance(six, visibility.coefficients, visibility.normals, kOrder);
+    const PcaMap ten = reduceComponents(all, visibility.normals, 10),
+                 byTen = reduceComponents(ten, visibility.normals, 6);
+    ASSERT_EQ(byTen.weights.size(), expected.size());
+    double worst = 0, leading = 0;
+    for (size_t i = 0; i < expected.size(); ++i) {
+        worst = std::max(worst, std::abs(double(byTen.weights[i]) - double(expected[i])));
+        leading = std::max(leading, std::abs(double(all.weights[i / 6 * 16 + i % 6]) - double(expected[i])));
+    }
+    EXPECT_LT(worst, 1e-3);
+    EXPECT_GT(leading, 0.1);
+    all.attributes["weightsFit"] = "guessed";
+    EXPECT_THROW(reduceComponents(all, visibility.normals, 6), InputError);
+    all.attributes["weightsFit"] = "plain";
+    EXPECT_EQ(reduceComponents(all, visibility.normals, 6).weights[7], all.weights[16 + 1]);
 }
 
 TEST(TechniqueNames, AreReadBack) {
