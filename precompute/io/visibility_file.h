@@ -25,6 +25,10 @@ enum class Validity : uint32_t {
     Inside = 4,        ///< inside geometry with no valid texel near; baked value kept
 };
 inline constexpr int kValidityCount = 5;
+/// Its point lies inside geometry, whatever value it has.
+constexpr bool isInside(Validity validity) {
+    return validity == Validity::InsideFilled || validity == Validity::Inside;
+}
 const char* validityName(
     Validity validity);  ///< "empty", "valid", "gutter_filled", "inside_filled", "inside"
 

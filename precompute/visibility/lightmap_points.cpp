@@ -9,13 +9,6 @@
 #include "precompute/visibility/fill.h"
 
 namespace prt {
-namespace {
-
-bool isInside(Validity validity) {
-    return validity == Validity::Inside || validity == Validity::InsideFilled;
-}
-
-}  // namespace
 
 LightmapPoints::LightmapPoints(const Scene& scene, const PointGrid& grid, std::span<const Validity> validity)
     : scene_(scene), grid_(grid) {

@@ -153,10 +153,6 @@ class DiscLight {
     const std::vector<Vec3f> directions_;
 };
 
-bool isInside(Validity validity) {
-    return validity == Validity::Inside || validity == Validity::InsideFilled;
-}
-
 // What fillTexels and fillVertices spread: one coefficient, the visible share.
 BakeResult asBaked(std::vector<float> shares) {
     BakeResult baked;

@@ -6,7 +6,7 @@
 namespace prt::test {
 namespace {
 
-const std::vector<std::string> kCommands = {"precompute", "compress", "tabulate",
+const std::vector<std::string> kCommands = {"precompute", "compress", "tabulate", "lightmap",
                                             "relight",    "export",   "info"};
 const std::vector<std::string> kMeasurements = {
     "bake",    "basis",      "compression", "error",    "parameterization",
