@@ -41,6 +41,7 @@ LightTableBuilder& LiveLight::builder(int shOrder, int cosineBands) const {
 
 NormalTable LiveLight::emptyTable(const LightTableBuilder& builder, TableKind kind, int layers,
                                   const std::vector<double>& weights, double rotationRad) const {
+    PRT_CHECK_EQ(weights.size(), environments_.size());
     NormalTable table;
     table.kind = kind;
     table.layout = options_.layout;
