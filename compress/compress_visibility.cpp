@@ -16,7 +16,7 @@ namespace prt {
 namespace {
 
 constexpr size_t kBlockPoints = 2048;
-constexpr size_t kSampledPoints = 4096;
+constexpr size_t kSampledPoints = 8192;
 // Irradiance at geometric and tilted normals gains 1 to 4 % from the second and third, nothing from more.
 constexpr int kRefinements = 3;
 

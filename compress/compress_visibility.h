@@ -32,7 +32,7 @@ struct CompressionSettings {
 };
 
 /// What one pass over all points leaves: their mean and covariance, and a sample of them. Memory does not
-/// depend on the number of points: n⁴ doubles and twice 4096 points.
+/// depend on the number of points: n⁴ doubles and twice 8192 points.
 ///
 /// Coefficients that were projected for irradiance are not compared with each other as they are: far below
 /// their horizons, where irradiance does not look, they follow no common pattern, and a basis of them falls
@@ -49,7 +49,7 @@ class VisibilityStatistics {
     /// they stay plain.
     /// @throws InputError  no point counts; Interrupted
     PcaResult basis(const CompressionSettings& settings) const;
-    /// Points that count, 4096 at most.
+    /// Points that count, 8192 at most.
     const SampledRows& sample() const { return sample_; }
     /// Number of points that count, of all.
     size_t pointsUsed() const { return moments_.rowsUsed(); }

@@ -19,7 +19,7 @@ namespace {
 
 // Floats of all metrics held at once, and points at most.
 constexpr size_t kMetricFloats = size_t(1) << 24;
-constexpr size_t kMostPoints = 4096;
+constexpr size_t kMostPoints = 8192;
 constexpr Eigen::Index kChunkPoints = 256;  // summed in float, beyond that in double
 constexpr size_t kTaskColumns = 16;
 // Holds directions that the rows do not determine where they are, as a share of the mean diagonal.

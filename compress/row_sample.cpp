@@ -1,13 +1,16 @@
-// Bottom-k sampling [CohenKaplan2007]: hashes of numbers in place of random ones, so that results repeat.
+// Bottom-k sampling [CohenKaplan2007] by multiples of the golden ratio in place of random numbers: the
+// smallest of them belong to evenly spaced rows.
 #include "compress/row_sample.h"
 
 #include <algorithm>
 
 #include "precompute/base/check.h"
-#include "precompute/math/split_mix.h"
 
 namespace prt {
 namespace {
+
+// Of 2^64. Odd: the products of different numbers differ.
+constexpr uint64_t kGoldenRatio = 0x9e3779b97f4a7c15u;
 
 void appendRow(SampledRows& to, const SampledRows& from, size_t point, size_t dimension) {
     const auto row = from.rows.begin() + ptrdiff_t(point * dimension);
@@ -38,7 +41,7 @@ void RowSampler::add(std::span<const float> rows, std::span<const Vec3f> normals
     if (!rowWeights.empty()) PRT_CHECK_EQ(rowWeights.size(), normals.size());
     for (size_t i = 0; i < normals.size(); ++i) {
         if (!use.empty() && !use[i]) continue;
-        const uint64_t number = seen_++, hash = SplitMix64{number}.next();
+        const uint64_t number = seen_++, hash = number * kGoldenRatio;
         if (hash > bound_) continue;
         const size_t slot = freeSlots_.empty() ? entries_.size() : freeSlots_.back();
         if (!freeSlots_.empty()) freeSlots_.pop_back();
@@ -55,7 +58,6 @@ void RowSampler::add(std::span<const float> rows, std::span<const Vec3f> normals
     }
 }
 
-// Hashes of different numbers differ: the hash is a bijection.
 void RowSampler::prune() {
     const auto last = entries_.begin() + ptrdiff_t(capacity_ - 1);
     std::nth_element(entries_.begin(), last, entries_.end(),

@@ -20,9 +20,11 @@ struct SampledRows {
 /// At most `count` of the sample's points, evenly spaced.
 SampledRows thinned(const SampledRows& sample, size_t dimension, size_t count);
 
-/// Of the rows in use the `capacity` whose numbers (0, 1, … in order of arrival) have the smallest hashes: a
-/// uniform sample without replacement that does not line up with rows of texels, the same however rows are
-/// cut into parts. All of them where they are no more. Memory: twice the capacity.
+/// Of the rows in use the `capacity` whose numbers k (0, 1, … in order of arrival) have the smallest
+/// fractional parts of k times the golden ratio: a sample without replacement that is spread evenly over them
+/// (gaps of three lengths at most, nearer to the population than a random one) and does not line up with rows
+/// of texels, the same however rows are cut into parts. All of them where they are no more. Memory: twice the
+/// capacity.
 /// @source bottom-k sampling [CohenKaplan2007]
 class RowSampler {
   public:
