@@ -179,8 +179,10 @@ std::string snippet(const Language& language, const ShaderSettings& settings) {
     }
     if (settings.hasSuns)
         text += fmt::format(
-            "\n/// Irradiance of a sun, to be added to that of tables with \"extractSun\" \"yes\". shadow: red of its "
-            "texture\n/// at the point; the next two: from \"suns\" in the JSON file. normal: world, of any length.\n"
+            "\n/// Irradiance of a sun, to be added to that of tables with \"extractSun\" \"yes\". shadow: "
+            "red of its "
+            "texture\n/// at the point; the next two: from \"suns\" in the JSON file. normal: world, of any "
+            "length.\n"
             "{0} prtSunIrradiance(float shadow, {0} sunIrradiance, {0} sunDirection, {0} normal) {{\n"
             "    return sunIrradiance * (shadow * max(dot(normalize(normal), sunDirection), 0.0));\n}}\n",
             language.vector3);

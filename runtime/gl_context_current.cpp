@@ -9,7 +9,7 @@ namespace {
 
 /// Two functions of an interface that is in the process already.
 struct Interface {
-    const char *library, *current, *getProc;
+    const char *file, *current, *getProc;
 };
 constexpr Interface kInterfaces[] = {{"libEGL.so.1", "eglGetCurrentContext", "eglGetProcAddress"},
                                      {"libGLX.so.0", "glXGetCurrentContext", "glXGetProcAddressARB"},
@@ -20,7 +20,7 @@ class CallerBackend : public GlBackend {
   public:
     explicit CallerBackend(GlGetProc getProc) : getProc_(getProc) {
         for (const Interface& known : kInterfaces) {
-            void* library = ::dlopen(known.library, RTLD_LAZY | RTLD_LOCAL | RTLD_NOLOAD);
+            void* library = ::dlopen(known.file, RTLD_LAZY | RTLD_LOCAL | RTLD_NOLOAD);
             if (!library) continue;
             const auto current = reinterpret_cast<Current>(::dlsym(library, known.current));
             void* context = current ? current() : nullptr;

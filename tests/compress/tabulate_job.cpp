@@ -55,9 +55,8 @@ TEST_F(Jobs, TripleProductTablesFollowTheBasisOfTheBundle) {
     EXPECT_EQ(table.kind, TableKind::TripleProduct);
     EXPECT_EQ(table.layers, 7);
     const std::vector<float> expected = buildTripleProductTable(lightCosine, 4, 5, pca.mean, pca.basis);
-    const float largest = std::abs(*std::max_element(expected.begin(), expected.end(), [](float a, float b) {
-        return std::abs(a) < std::abs(b);
-    }));
+    const float largest = std::abs(*std::max_element(
+        expected.begin(), expected.end(), [](float a, float b) { return std::abs(a) < std::abs(b); }));
     for (size_t i = 0; i < expected.size(); ++i)
         ASSERT_NEAR(table.values[i], expected[i], 1e-5f * largest) << i;
     const Bundle bundle = Bundle::open(bundle_);
