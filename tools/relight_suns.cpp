@@ -9,26 +9,22 @@ namespace prt::tools {
 
 RelightSuns::RelightSuns(const Bundle& bundle, const Scene& scene,
                          const std::vector<Environment>& environments, double rotationRad)
-    : bundle_(bundle), scene_(scene), environments_(environments), isTurned_(rotationRad != 0) {
-    const Mat3d turn = rotationAboutUp(rotationRad);
-    for (const Environment& environment : environments) {
+    : bundle_(bundle), scene_(scene), environments_(environments), rotationRad_(rotationRad) {}
+
+void RelightSuns::find() {
+    const Mat3d turn = rotationAboutUp(rotationRad_);
+    for (const Environment& environment : environments_) {
         suns_.push_back(extractSun(environment.view()).sun);
         suns_.back().direction = turn * suns_.back().direction;
     }
     shadows_.resize(suns_.size());
 }
 
-std::vector<double> RelightSuns::shares() const {
-    std::vector<double> shares;
-    for (const ExtractedSun& sun : suns_) shares.push_back(sun.found ? sun.share : 0);
-    return shares;
-}
-
 const std::vector<float>& RelightSuns::shadow(size_t environment) {
     std::vector<float>& shadow = shadows_[environment];
     if (!shadow.empty()) return shadow;
     const std::string file = sunShadowFileName(environments_[environment].name);
-    if (!isTurned_ && bundle_.find(file) && bundle_.staleReason(file, false).empty()) {
+    if (rotationRad_ == 0 && bundle_.find(file) && bundle_.staleReason(file, false).empty()) {
         SunShadowMap stored = readSunShadowFile(bundle_.pathOf(file).string());
         const auto hash = stored.attributes.find("environmentHash");
         if (hash != stored.attributes.end() && hash->second == environments_[environment].contentHash) {
@@ -47,6 +43,7 @@ const std::vector<float>& RelightSuns::shadow(size_t environment) {
 }
 
 std::vector<SunLight> RelightSuns::make(const std::vector<double>& weights) {
+    if (suns_.empty()) find();
     std::vector<SunLight> lights;
     for (size_t e = 0; e < suns_.size(); ++e) {
         if (weights[e] == 0 || !suns_[e].found) continue;

@@ -16,26 +16,25 @@ namespace prt::tools {
 
 class RelightSuns {
   public:
-    /// Finds the sun of every environment. All arguments but the last must outlive the object.
+    /// All arguments but the last must outlive the object.
     RelightSuns(const Bundle& bundle, const Scene& scene, const std::vector<Environment>& environments,
                 double rotationRad);
 
-    /// Those of environments of weight > 0, turned and weighted.
+    /// Those of environments of weight > 0, turned and weighted; the first call finds them.
     /// @throws InputError  visibility.exr missing or stale
     std::vector<SunLight> make(const std::vector<double>& weights);
     /// Of the points of the shadows; after make().
     const PointGrid& grid() const { return grid_; }
-    /// Shares of the environments' light that are in their suns; 0 where there is none.
-    std::vector<double> shares() const;
 
   private:
+    void find();
     const std::vector<float>& shadow(size_t environment);
 
     const Bundle& bundle_;
     const Scene& scene_;
     const std::vector<Environment>& environments_;
-    bool isTurned_;
-    std::vector<ExtractedSun> suns_;           // turned
+    double rotationRad_;
+    std::vector<ExtractedSun> suns_;           // turned; empty: not looked for yet
     std::vector<std::vector<float>> shadows_;  // empty: not made yet
     PointGrid grid_;
     std::optional<RayCaster> caster_;

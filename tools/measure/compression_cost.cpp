@@ -2,15 +2,15 @@
 // [Sloan2006].
 #include "tools/measure/compression_cost.h"
 
+#include "compress/tables/normal_tables.h"
 #include "precompute/base/check.h"
 #include "precompute/math/sh.h"
+#include "runtime/technique.h"
 
 namespace prt::tools {
 namespace {
 
 constexpr size_t kBytesOfHalf = 2;
-
-int layersOf(int values) { return (values + 3) / 4; }
 
 }  // namespace
 
@@ -20,13 +20,11 @@ size_t tableBytes(int values, bool hasMean, int size) {
 }
 
 PixelCost pixelCost(int values, bool hasMean, PointDomain domain) {
-    const int layers = layersOf(values);
-    PixelCost cost{4 * layers + (hasMean ? 1 : 0), 12 * layers};
-    if (domain == PointDomain::Vertex) {
-        cost.fetches += 2 * layers;
-        cost.multiplyAdds += 12 * layers;
-    }
-    return cost;
+    TechniqueSource source;
+    (hasMean ? source.components : source.shOrder) = hasMean ? values : shOrderFromCount(size_t(values));
+    const TechniqueCost cost =
+        techniqueCost(hasMean ? Technique::Pca : Technique::Unc, source, domain, kTableCosineBands);
+    return {cost.fetches, cost.multiplyAdds};
 }
 
 std::vector<TransferStorage> transferStorage(int shOrder) {

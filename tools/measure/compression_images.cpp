@@ -16,6 +16,7 @@
 #include "runtime/renderer.h"
 #include "tools/background.h"
 #include "tools/comparison.h"
+#include "tools/exposure.h"
 #include "tools/measure/compression_sheet.h"
 
 namespace prt::tools {
@@ -101,20 +102,6 @@ class View {
     RenderOptions options_;
     GlContext context_;
 };
-
-// The exposure at which nine tenths of what is seen of the scene are below 0.6 of white.
-double exposureOf(const FloatImage& radiance, const SurfaceImage& surface) {
-    std::vector<float> luminance;
-    for (size_t p = 0; p < surface.pixels(); ++p)
-        if (surface.triangle[p] != kNoTriangle) {
-            const float* v = &radiance.pixels[3 * p];
-            luminance.push_back(0.2126f * v[0] + 0.7152f * v[1] + 0.0722f * v[2]);
-        }
-    if (luminance.empty()) return 0;
-    const auto at = luminance.begin() + ptrdiff_t(luminance.size() * 9 / 10);
-    std::nth_element(luminance.begin(), at, luminance.end());
-    return *at > 0 ? std::log2(0.6 / double(*at)) : 0;
-}
 
 // A figure as it grows: pictures above, differences below.
 class FigureSheet {
@@ -214,7 +201,7 @@ std::vector<PictureRow> drawCompressionFigures(CompressionScene& scene, const st
     const VisibilityMap& map = scene.visibility(highest);
     const SurfaceImage surface = pictures.surface(map);
     const Picture traced = pictures.traced(surface), uncompressed = pictures.uncompressed(map);
-    const double exposureStops = exposureOf(traced.radiance, surface);
+    const double exposureStops = autoExposure(traced.radiance, surface);
     std::vector<PictureRow> rows;
 
     FigureSheet figure5("figure5", surface, exposureStops, folder);
