@@ -78,9 +78,10 @@ struct Renderer::State {
 
     CameraFrame begin(const Camera& camera, const RenderOptions& options);
     void drawSurface(const CameraFrame& camera, const RenderOptions& options);
-    void drawLight(const TechniqueData& data);
+    void drawLight(const TechniqueData* data);
     void drawBackground(const CameraFrame& camera);
-    void drawFrame(const CameraFrame& camera, const TechniqueData& data, const RenderOptions& options);
+    void drawFrame(const CameraFrame& camera, const TechniqueData* data, const RenderOptions& options);
+    const GlProgram& useBaseProgram();
     TechniqueData& dataOf(Technique technique);
     const TechniqueData& ready(Technique technique);
     template <class Map>
@@ -96,6 +97,7 @@ struct Renderer::State {
     std::vector<SunLight> suns;  // without their shadows
     CoefficientImage sunShadows;
     GlProgram backgroundProgram;
+    std::optional<GlProgram> baseProgram;
     GlObject background;
     float backgroundRotationRad = 0;
     GlObject vertexArray;
@@ -133,12 +135,19 @@ void Renderer::State::drawSurface(const CameraFrame& camera, const RenderOptions
     scene.draw(camera, options.normalMap);
 }
 
-// Over the pixels whose depth is greater than that of nothing.
-void Renderer::State::drawLight(const TechniqueData& data) {
+const GlProgram& Renderer::State::useBaseProgram() {
+    if (!baseProgram) baseProgram.emplace(gl, "screen.vert", "light.frag", "#define BASE_PASS\n");
+    baseProgram->use();
+    return *baseProgram;
+}
+
+// Over the pixels whose depth is greater than that of nothing. Without data: the base pass.
+void Renderer::State::drawLight(const TechniqueData* data) {
     gl.DepthFunc(GL_LESS);
-    const GlProgram& program = data.use();
-    program.set("sunCount", int(suns.size()));
-    for (size_t i = 0; i < suns.size(); ++i) {
+    const GlProgram& program = data ? data->use() : useBaseProgram();
+    const size_t sunCount = data ? suns.size() : 0;
+    program.set("sunCount", int(sunCount));
+    for (size_t i = 0; i < sunCount; ++i) {
         program.set(fmt::format("sunDirection[{}]", i).c_str(), suns[i].direction);
         program.set(fmt::format("sunIrradiance[{}]", i).c_str(), suns[i].irradiance);
     }
@@ -161,7 +170,7 @@ void Renderer::State::drawBackground(const CameraFrame& camera) {
     gl.DrawArrays(GL_TRIANGLES, 0, 3);
 }
 
-void Renderer::State::drawFrame(const CameraFrame& camera, const TechniqueData& data,
+void Renderer::State::drawFrame(const CameraFrame& camera, const TechniqueData* data,
                                 const RenderOptions& options) {
     drawSurface(camera, options);
     const GLuint frame = targets->lightFrame.name();
@@ -300,7 +309,7 @@ void Renderer::setBackground(const FloatImage& latLong, double rotationRad) {
 RenderedFrame Renderer::render(const Camera& camera, Technique technique, const RenderOptions& options) {
     State& s = *state_;
     const TechniqueData& data = s.ready(technique);
-    s.drawFrame(s.begin(camera, options), data, options);
+    s.drawFrame(s.begin(camera, options), &data, options);
     s.context.check("drawing");
     RenderedFrame frame;
     frame.radiance = readRgb(s.gl, s.targets->radiance, options.width, options.height);
@@ -348,12 +357,12 @@ SurfaceImage Renderer::surface(const Camera& camera, const RenderOptions& option
     return image;
 }
 
-double Renderer::frameMilliseconds(const Camera& camera, Technique technique, const RenderOptions& options,
-                                   int frames) {
+double Renderer::frameMilliseconds(const Camera& camera, std::optional<Technique> technique,
+                                   const RenderOptions& options, int frames) {
     PRT_CHECK_LT(0, frames);
     constexpr int kWarmUp = 2;  // shaders are compiled for the state they meet first
     State& s = *state_;
-    const TechniqueData& data = s.ready(technique);
+    const TechniqueData* data = technique ? &s.ready(*technique) : nullptr;
     const CameraFrame view = s.begin(camera, options);
     std::vector<double> times;
     for (int i = 0; i < kWarmUp + frames; ++i) {

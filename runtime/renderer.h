@@ -77,8 +77,10 @@ class Renderer {
     /// The points that render() shades: same geometry, textures, normal maps and filtering.
     SurfaceImage surface(const Camera& camera, const RenderOptions& options);
     /// Median time of a frame, ms, glFinish and a clock, after warm-up.
-    double frameMilliseconds(const Camera& camera, Technique technique, const RenderOptions& options,
-                             int frames);
+    /// @param technique  none: the base pass, the same frame with an irradiance of 1 (geometry, normal map,
+    /// albedo), what is to be subtracted to have a technique's own time
+    double frameMilliseconds(const Camera& camera, std::optional<Technique> technique,
+                             const RenderOptions& options, int frames);
 
   private:
     struct State;

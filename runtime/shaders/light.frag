@@ -3,6 +3,7 @@
 //   PRECONVOLVED       E_c = k T_c(n), k ambient occlusion, T unoccluded irradiance
 //   UNIFORM_PRODUCTS   E_c = Σ_j f_j(n) (P_jc,mean + Σ_i k_i P_jci), f functions of the clamped cosine
 //   TWO_BANDS          E_c = ∫ V L_c max(0, n·ω) dω, V and L of two bands
+//   BASE_PASS          E_c = 1: what a frame costs without its light
 // [IwanickiSloan2012, Sec. 3 to 5]
 layout(binding = 0) uniform sampler2D places;
 layout(binding = 1) uniform sampler2D normals;
@@ -144,6 +145,8 @@ vec3 irradianceAt(Points points, vec3 n) {
     }
     return sum;
 }
+#elif defined(BASE_PASS)
+vec3 irradianceAt(Points points, vec3 n) { return vec3(1.0); }
 #elif defined(PRECONVOLVED)
 vec3 irradianceAt(Points points, vec3 n) { return valuesAt(coefficients, points, 0).r * tableAt(tablePoint(n), 0).rgb; }
 #else
