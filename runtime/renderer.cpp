@@ -270,6 +270,10 @@ void Renderer::setLight(Technique technique, const LiveLight& light, const std::
         data.setLight(light.blend(weights, rotationRad), light.cosineBands());
 }
 
+uint64_t Renderer::lightRevision(Technique technique) const {
+    return state_->dataOf(technique).lightRevision();
+}
+
 void Renderer::setSuns(std::span<const SunLight> suns, const PointGrid& grid) {
     State& s = *state_;
     s.context.makeCurrent();
@@ -358,19 +362,18 @@ SurfaceImage Renderer::surface(const Camera& camera, const RenderOptions& option
 }
 
 double Renderer::frameMilliseconds(const Camera& camera, std::optional<Technique> technique,
-                                   const RenderOptions& options, int frames) {
+                                   const RenderOptions& options, int frames, int warmUpFrames) {
     PRT_CHECK_LT(0, frames);
-    constexpr int kWarmUp = 2;  // shaders are compiled for the state they meet first
     State& s = *state_;
     const TechniqueData* data = technique ? &s.ready(*technique) : nullptr;
     const CameraFrame view = s.begin(camera, options);
     std::vector<double> times;
-    for (int i = 0; i < kWarmUp + frames; ++i) {
+    for (int i = 0; i < warmUpFrames + frames; ++i) {
         throwIfInterrupted();
         const Stopwatch watch;
         s.drawFrame(view, data, options);
         s.gl.Finish();
-        if (i >= kWarmUp) times.push_back(watch.seconds() * 1e3);
+        if (i >= warmUpFrames) times.push_back(watch.seconds() * 1e3);
     }
     s.context.check("drawing");
     std::ranges::sort(times);

@@ -64,6 +64,9 @@ class Renderer {
     /// @throws InputError  the technique was not added; more uniforms than OpenGL takes
     void setLight(Technique technique, const LiveLight& light, const std::vector<double>& weights,
                   double rotationRad);
+    /// How often the technique was given a table or light: the same number, the same light.
+    /// @throws InputError  the technique was not added
+    uint64_t lightRevision(Technique technique) const;
     /// Lights besides the tables', for every technique; replaces the previous ones. Each adds its irradiance
     /// × max(0, n·direction) × shadow.
     /// @param grid  of the shadows: that of the visibility or PCA data
@@ -79,8 +82,9 @@ class Renderer {
     /// Median time of a frame, ms, glFinish and a clock, after warm-up.
     /// @param technique  none: the base pass, the same frame with an irradiance of 1 (geometry, normal map,
     /// albedo), what is to be subtracted to have a technique's own time
+    /// @param warmUpFrames  drawn first and not counted; shaders are compiled for the state they meet first
     double frameMilliseconds(const Camera& camera, std::optional<Technique> technique,
-                             const RenderOptions& options, int frames);
+                             const RenderOptions& options, int frames, int warmUpFrames = 2);
 
   private:
     struct State;
