@@ -123,6 +123,7 @@ void TechniqueData::setTable(const NormalTable& table) {
                          "make it anew with prt tabulate");
     uploadTable(context_, table, table_);
     chooseProgram(layoutDefine(table.layout));
+    ++lightRevision_;
 }
 
 void TechniqueData::setLight(const EnvironmentSh& light, int cosineBands) {
@@ -131,6 +132,7 @@ void TechniqueData::setLight(const EnvironmentSh& light, int cosineBands) {
         setTwoBands(light);
     else
         setProducts(light, cosineBands);
+    ++lightRevision_;
 }
 
 void TechniqueData::setProducts(const EnvironmentSh& light, int cosineBands) {

@@ -1,6 +1,7 @@
 // What one technique draws with: textures, uniforms and shaders. Internal.
 #pragma once
 
+#include <cstdint>
 #include <map>
 #include <string>
 #include <vector>
@@ -36,6 +37,8 @@ class TechniqueData {
 
     /// @throws InputError  no light was set
     void checkLight() const;
+    /// Tables or uniforms that were set so far.
+    uint64_t lightRevision() const { return lightRevision_; }
     int shOrder() const { return shOrder_; }
     /// Vectors that weights belong to, without the weights; empty for techniques that read visibility.
     const PcaMap& basis() const { return basis_; }
@@ -58,6 +61,7 @@ class TechniqueData {
     std::string defines_;
     std::map<std::string, GlProgram> programs_;  // by further defines
     const GlProgram* program_ = nullptr;         // that of the light
+    uint64_t lightRevision_ = 0;
 };
 
 /// Whether the technique looks light up by the normal; else its light is uniforms.

@@ -69,7 +69,7 @@ class Relight {
           printText_(printText),
           data_(loadRelightData(arguments)),
           techniques_(arguments_, data_),
-          suns_(data_.bundle, data_.scene, data_.environments, techniques_.rotationRad()),
+          suns_(data_.bundle, data_.scene, data_.environments),
           camera_(arguments.camera(sceneBounds(data_.scene))),
           options_{arguments.width, arguments.height, !arguments.noNormalMap},
           context_(arguments.context.kind()),
@@ -118,7 +118,7 @@ class Relight {
   private:
     void trace() {
         const RayCaster caster(data_.scene.positions, data_.scene.indices);
-        const std::vector<double> rotations(data_.environments.size(), techniques_.rotationRad());
+        const std::vector<double> rotations(data_.environments.size(), arguments_.rotationRad());
         directions_ = makeReferenceDirections(data_.environments, rotations, arguments_.referenceRays);
         if (!arguments_.compareReference) {
             truth_ = traceReference(caster, surface_, directions_);
@@ -146,7 +146,7 @@ class Relight {
         const bool needBackground = !arguments_.noBackground && !arguments_.output.empty();
         const FloatImage background =
             needBackground ? blendImages(data_.environments, weights) : FloatImage{};
-        if (needBackground) renderer_.setBackground(background, techniques_.rotationRad());
+        if (needBackground) renderer_.setBackground(background, arguments_.rotationRad());
 
         std::vector<float> truth;
         if (!truth_.empty()) truth = blend(truth_, weights);
@@ -155,12 +155,10 @@ class Relight {
             referenceImage = radianceFromIrradiance(truth, surface_);
             if (needBackground)
                 paintBackground(referenceImage, surface_, camera_, sceneBounds(data_.scene), background,
-                                techniques_.rotationRad());
+                                arguments_.rotationRad());
         }
         if (arguments_.tables.extractSun && !data_.techniques.empty()) {
-            const std::vector<SunLight> suns = suns_.make(weights);
-            renderer_.setSuns(suns, suns_.grid());
-            report.set("suns", uint64_t(suns.size()));
+            report.set("suns", uint64_t(suns_.setTo(renderer_, weights, arguments_.rotationRad())));
         }
         if (arguments_.reference) writeImages(referenceImage, referenceImage, name, "reference");
 
@@ -184,7 +182,7 @@ class Relight {
               const FloatImage& referenceImage, const std::string& environment, Report& report,
               std::vector<Report>& rows) {
         const std::string name = techniqueName(technique);
-        const char* origin = techniques_.setLight(renderer_, technique, weights);
+        const char* origin = techniques_.setLight(renderer_, technique, weights, arguments_.rotationRad());
         const RenderedFrame frame = renderer_.render(camera_, techniques_.drawn(technique), options_);
         if (arguments_.isAsked(technique)) {
             if (technique == firstAsked()) report.set("tables", origin);
@@ -230,11 +228,11 @@ class Relight {
     void timeFrames(Report& report) {
         if (arguments_.timeFrames == 0) return;
         if (arguments_.tables.extractSun && !data_.techniques.empty())
-            renderer_.setSuns(suns_.make(data_.weights), suns_.grid());
+            suns_.setTo(renderer_, data_.weights, arguments_.rotationRad());
         std::vector<Report> rows;
         for (const Technique technique : data_.techniques) {
             if (!arguments_.isAsked(technique)) continue;
-            techniques_.setLight(renderer_, technique, data_.weights);
+            techniques_.setLight(renderer_, technique, data_.weights, arguments_.rotationRad());
             const double ms = renderer_.frameMilliseconds(camera_, techniques_.drawn(technique), options_,
                                                           arguments_.timeFrames);
             if (rows.empty()) report.set("frame_ms", ms);

@@ -117,6 +117,8 @@ void RelightArguments::parseTechniques() {
                              "put {technique} into the name");
 }
 
+double RelightArguments::rotationRad() const { return rotateDeg * std::numbers::pi / 180; }
+
 bool RelightArguments::isAsked(Technique technique) const {
     return allTechniques || std::ranges::find(techniques, technique) != techniques.end();
 }

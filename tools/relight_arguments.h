@@ -50,6 +50,8 @@ struct RelightArguments {
     std::optional<double> exposureStops;  ///< empty: chosen from the picture
 
     void addTo(CommandLine& line);
+    /// Turn of the environments, from --rotate.
+    double rotationRad() const;
     /// Whether a picture of the technique was asked for, not only its error.
     bool isAsked(Technique technique) const;
     /// Checks and parses the texts.

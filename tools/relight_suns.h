@@ -1,6 +1,7 @@
 // Suns of relit environments, with shadows from the bundle where it has them, else traced.
 #pragma once
 
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -16,26 +17,41 @@ namespace prt::tools {
 
 class RelightSuns {
   public:
-    /// All arguments but the last must outlive the object.
-    RelightSuns(const Bundle& bundle, const Scene& scene, const std::vector<Environment>& environments,
-                double rotationRad);
+    /// Arguments must outlive the object.
+    RelightSuns(const Bundle& bundle, const Scene& scene, const std::vector<Environment>& environments);
 
-    /// Those of environments of weight > 0, turned and weighted; the first call finds them.
+    /// Those of environments of weight > 0, turned and weighted; the first call finds them. Shadows of the
+    /// unturned suns and of the last turn are kept, others are traced.
+    /// @param weights      [environments]
+    /// @param rotationRad  turn of the environments about the up axis
     /// @throws InputError  visibility.exr missing or stale
-    std::vector<SunLight> make(const std::vector<double>& weights);
+    std::vector<SunLight> make(const std::vector<double>& weights, double rotationRad);
+    /// Gives the renderer the suns of make(); does nothing where it was given just these last.
+    /// @return suns that it has now
+    size_t setTo(Renderer& renderer, const std::vector<double>& weights, double rotationRad);
     /// Of the points of the shadows; after make().
     const PointGrid& grid() const { return grid_; }
 
   private:
+    // Shadows of one turn of the environments.
+    struct Turn {
+        double rotationRad = 0;
+        std::vector<std::vector<float>> shadows;  // [environments] empty: not made yet
+    };
+    struct Given {
+        std::vector<double> weights;
+        double rotationRad = 0;
+        size_t suns = 0;
+    };
     void find();
-    const std::vector<float>& shadow(size_t environment);
+    const std::vector<float>& shadow(size_t environment, const ExtractedSun& turned, Turn& turn);
 
     const Bundle& bundle_;
     const Scene& scene_;
     const std::vector<Environment>& environments_;
-    double rotationRad_;
-    std::vector<ExtractedSun> suns_;           // turned; empty: not looked for yet
-    std::vector<std::vector<float>> shadows_;  // empty: not made yet
+    std::vector<ExtractedSun> suns_;  // as the environments have them; empty: not looked for yet
+    Turn unturned_, turned_;
+    std::map<const Renderer*, Given> given_;
     PointGrid grid_;
     std::optional<RayCaster> caster_;
     std::vector<Validity> validity_;

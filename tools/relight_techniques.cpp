@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <numbers>
 
 #include "compress/reduce_visibility.h"
 #include "compress/tabulate_job.h"
@@ -86,7 +85,7 @@ RelightData loadRelightData(const RelightArguments& arguments) {
 }
 
 RelightTechniques::RelightTechniques(const RelightArguments& arguments, const RelightData& data)
-    : arguments_(arguments), data_(data), rotationRad_(arguments.rotateDeg * std::numbers::pi / 180) {}
+    : arguments_(arguments), data_(data) {}
 
 Technique RelightTechniques::drawn(Technique technique) const {
     const TechniqueSource source = data_.source();
@@ -95,7 +94,8 @@ Technique RelightTechniques::drawn(Technique technique) const {
     return technique;
 }
 
-void RelightTechniques::addTo(Renderer& renderer) const {
+void RelightTechniques::addTo(Renderer& renderer) {
+    std::erase_if(given_, [&](const auto& entry) { return entry.first.first == &renderer; });
     for (const Technique named : data_.techniques) {
         const Technique technique = drawn(named);
         if (readsVisibility(technique)) {
@@ -114,9 +114,19 @@ void RelightTechniques::addTo(Renderer& renderer) const {
 }
 
 const char* RelightTechniques::setLight(Renderer& renderer, Technique technique,
-                                        const std::vector<double>& weights) {
+                                        const std::vector<double>& weights, double rotationRad) {
     const Technique used = drawn(technique);
-    if (used == Technique::Unc || used == Technique::Pca) {
+    Given& given = given_[{&renderer, used}];
+    if (given.origin && given.weights == weights && given.rotationRad == rotationRad) return given.origin;
+    given.origin = nullptr;
+    const char* origin = makeLight(renderer, used, weights, rotationRad);
+    given = {weights, rotationRad, origin};
+    return origin;
+}
+
+const char* RelightTechniques::makeLight(Renderer& renderer, Technique used,
+                                         const std::vector<double>& weights, double rotationRad) {
+    if (rotationRad == 0 && (used == Technique::Unc || used == Technique::Pca)) {
         const TableKind kind = used == Technique::Unc ? TableKind::LightCosine : TableKind::TripleProduct;
         if (const auto table = blendStored(kind, weights)) {
             renderer.setTable(used, *table);
@@ -124,30 +134,39 @@ const char* RelightTechniques::setLight(Renderer& renderer, Technique technique,
         }
     }
     if (!live_) live_.emplace(data_.environments, data_.shOrder, arguments_.tables);
-    renderer.setLight(used, *live_, weights, rotationRad_);
+    renderer.setLight(used, *live_, weights, rotationRad);
     return "built";
 }
 
 std::optional<NormalTable> RelightTechniques::blendStored(TableKind kind,
-                                                          const std::vector<double>& weights) const {
-    if (rotationRad_ != 0) return std::nullopt;
+                                                          const std::vector<double>& weights) {
     std::optional<NormalTable> blend;
     for (size_t e = 0; e < weights.size(); ++e) {
         if (weights[e] == 0) continue;
-        auto table = stored(kind, data_.environments[e]);
+        const std::optional<NormalTable>& table = stored(kind, e);
         if (!table) return std::nullopt;
-        for (float& value : table->values) value *= float(weights[e]);
         if (!blend) {
-            blend = std::move(table);
+            blend = table;
+            for (float& value : blend->values) value *= float(weights[e]);
             continue;
         }
         if (blend->layers != table->layers) return std::nullopt;
-        for (size_t i = 0; i < blend->values.size(); ++i) blend->values[i] += table->values[i];
+        for (size_t i = 0; i < blend->values.size(); ++i)
+            blend->values[i] += float(weights[e]) * table->values[i];
     }
     return blend;
 }
 
-std::optional<NormalTable> RelightTechniques::stored(TableKind kind, const Environment& environment) const {
+// Read once: light may change every frame.
+const std::optional<NormalTable>& RelightTechniques::stored(TableKind kind, size_t environment) {
+    const std::pair key(kind, environment);
+    const auto found = stored_.find(key);
+    if (found != stored_.end()) return found->second;
+    return stored_[key] = readStored(kind, data_.environments[environment]);
+}
+
+std::optional<NormalTable> RelightTechniques::readStored(TableKind kind,
+                                                         const Environment& environment) const {
     const std::string name = tableFileName(environment.name, tableKindName(kind), arguments_.tables.layout);
     if (!data_.bundle.find(name) || !data_.bundle.staleReason(name, false).empty()) return std::nullopt;
     NormalTable table = readTableFile(data_.bundle.pathOf(name).string());

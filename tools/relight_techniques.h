@@ -1,8 +1,10 @@
 // What prt relight draws: the data of a bundle that the techniques asked for need, and their light.
 #pragma once
 
+#include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "precompute/io/bundle.h"
@@ -45,23 +47,35 @@ class RelightTechniques {
     RelightTechniques(const RelightArguments& arguments, const RelightData& data);
 
     /// Reduces visibility and weights to what each technique takes, and uploads them.
-    void addTo(Renderer& renderer) const;
-    /// @param weights  [environments]
+    void addTo(Renderer& renderer);
+    /// Does nothing where the renderer's technique was given just this light last; so it may be called for
+    /// every frame. The renderer's light must be set in no other way meanwhile.
+    /// @param weights      [environments]
+    /// @param rotationRad  turn of the environments about the up axis
     /// @return "bundle" or "built": where its tables came from
-    const char* setLight(Renderer& renderer, Technique technique, const std::vector<double>& weights);
+    const char* setLight(Renderer& renderer, Technique technique, const std::vector<double>& weights,
+                         double rotationRad);
     /// The name under which the renderer has a technique: asking for all bands or vectors by their number is
     /// asking for all.
     Technique drawn(Technique technique) const;
-    double rotationRad() const { return rotationRad_; }
 
   private:
-    std::optional<NormalTable> blendStored(TableKind kind, const std::vector<double>& weights) const;
-    std::optional<NormalTable> stored(TableKind kind, const Environment& environment) const;
+    struct Given {
+        std::vector<double> weights;
+        double rotationRad = 0;
+        const char* origin = nullptr;
+    };
+    const char* makeLight(Renderer& renderer, Technique technique, const std::vector<double>& weights,
+                          double rotationRad);
+    std::optional<NormalTable> blendStored(TableKind kind, const std::vector<double>& weights);
+    const std::optional<NormalTable>& stored(TableKind kind, size_t environment);
+    std::optional<NormalTable> readStored(TableKind kind, const Environment& environment) const;
 
     const RelightArguments& arguments_;
     const RelightData& data_;
-    double rotationRad_;
     std::optional<LiveLight> live_;
+    std::map<std::pair<TableKind, size_t>, std::optional<NormalTable>> stored_;  // as far as asked for
+    std::map<std::pair<const Renderer*, Technique>, Given> given_;               // last
 };
 
 }  // namespace prt::tools
