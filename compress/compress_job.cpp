@@ -75,14 +75,7 @@ void checkKinds(const CompressSettings& settings) {
 
 // All but the weights.
 PcaMap makePcaMap(const VisibilityMap& visibility, const PcaResult& pca, const CompressSettings& settings) {
-    PcaMap map;
-    map.grid = visibility.grid;
-    map.shOrder = visibility.shOrder;
-    map.components = pca.components;
-    map.mean = pca.mean;
-    map.basis = pca.basis;
-    map.variance = pca.variance;
-    map.projection = visibility.projection;
+    PcaMap map = pcaMapOf(visibility, pca);
     // How the visibility was projected stays true of its compressed form.
     map.attributes = visibility.attributes;
     map.attributes["explainedVariance"] = fmt::format("{:.9g}", pca.explainedVariance);

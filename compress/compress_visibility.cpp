@@ -130,4 +130,16 @@ CompressedVisibility compressVisibility(std::span<const float> rows, std::span<c
     return result;
 }
 
+PcaMap pcaMapOf(const VisibilityMap& visibility, const PcaResult& pca) {
+    PcaMap map;
+    map.grid = visibility.grid;
+    map.shOrder = visibility.shOrder;
+    map.components = pca.components;
+    map.mean = pca.mean;
+    map.basis = pca.basis;
+    map.variance = pca.variance;
+    map.projection = visibility.projection;
+    return map;
+}
+
 }  // namespace prt

@@ -10,6 +10,7 @@
 #include "compress/pca.h"
 #include "compress/row_sample.h"
 #include "compress/visibility_rows.h"
+#include "precompute/io/visibility_file.h"
 #include "precompute/math/irradiance_weight.h"
 
 namespace prt {
@@ -97,5 +98,9 @@ CompressedVisibility compressVisibility(std::span<const float> rows, std::span<c
                                         const Projection& projection, int components, WeightsFit fit,
                                         Covariance covariance = Covariance::Irradiance,
                                         std::span<const float> rowWeights = {});
+
+/// Vectors of a bundle's visibility as a map without weights; grid, order and projection are those of the
+/// visibility. Attributes are left to the caller.
+PcaMap pcaMapOf(const VisibilityMap& visibility, const PcaResult& pca);
 
 }  // namespace prt

@@ -166,15 +166,8 @@ PcaMap compressMap(const VisibilityMap& visibility, int components, WeightsFit f
     CompressedVisibility compressed =
         compressVisibility(visibility.coefficients, validPoints(visibility), visibility.normals,
                            visibility.shOrder, visibility.projection, components, fit);
-    PcaMap map;
-    map.grid = visibility.grid;
-    map.shOrder = visibility.shOrder;
-    map.components = compressed.pca.components;
-    map.mean = std::move(compressed.pca.mean);
-    map.basis = std::move(compressed.pca.basis);
-    map.variance = std::move(compressed.pca.variance);
+    PcaMap map = pcaMapOf(visibility, compressed.pca);
     map.weights = std::move(compressed.weights);
-    map.projection = visibility.projection;
     return map;
 }
 
