@@ -14,6 +14,7 @@
 #include "precompute/base/parallel.h"
 #include "precompute/math/sh.h"
 #include "runtime/camera_frame.h"
+#include "runtime/display_pass.h"
 #include "runtime/gl_objects.h"
 #include "runtime/scene_images.h"
 #include "runtime/technique_data.h"
@@ -38,6 +39,12 @@ struct Targets {
                                            depth.name());
         lightFrame = makeFramebufferOver(gl, {radiance.name(), irradiance.name()}, depth.name());
     }
+};
+
+// Colours of points, and the program that shows them.
+struct PointColours {
+    CoefficientImage colours;
+    GlProgram program;
 };
 
 std::vector<float> readImage(const GlFunctions& gl, const GlObject& image, size_t pixels) {
@@ -70,7 +77,11 @@ Vec3f fromRgba(const float* rgba) { return {rgba[0], rgba[1], rgba[2]}; }
 
 struct Renderer::State {
     State(GlContext& glContext, const Scene& source)
-        : context(glContext), gl(glContext.gl()), scene(glContext, source), bounds(sceneBounds(source)) {
+        : context(glContext),
+          gl(glContext.gl()),
+          scene(glContext, source),
+          bounds(sceneBounds(source)),
+          display(glContext) {
         geometry.positions = source.positions;
         geometry.indices = source.indices;
         hasAtlas = !source.uv1.empty();
@@ -78,9 +89,11 @@ struct Renderer::State {
 
     CameraFrame begin(const Camera& camera, const RenderOptions& options);
     void drawSurface(const CameraFrame& camera, const RenderOptions& options);
-    void drawLight(const TechniqueData* data);
+    void drawLight(const GlProgram& program, std::span<const SunLight> lit);
     void drawBackground(const CameraFrame& camera);
+    void startLight();
     void drawFrame(const CameraFrame& camera, const TechniqueData* data, const RenderOptions& options);
+    void drawPoints(const Camera& camera, const RenderOptions& options);
     const GlProgram& useBaseProgram();
     TechniqueData& dataOf(Technique technique);
     const TechniqueData& ready(Technique technique);
@@ -98,6 +111,8 @@ struct Renderer::State {
     CoefficientImage sunShadows;
     GlProgram backgroundProgram;
     std::optional<GlProgram> baseProgram;
+    std::optional<PointColours> points;
+    DisplayPass display;
     GlObject background;
     float backgroundRotationRad = 0;
     GlObject vertexArray;
@@ -106,12 +121,9 @@ struct Renderer::State {
 
 CameraFrame Renderer::State::begin(const Camera& camera, const RenderOptions& options) {
     context.makeCurrent();
-    const GLint edge = glInteger(gl, GL_MAX_TEXTURE_SIZE);
     const int width = options.width, height = options.height;
-    if (width < 1 || height < 1 || width > edge || height > edge)
-        throw InputError("image",
-                         fmt::format("size {}x{} is outside 1x1 to {}x{}", width, height, edge, edge),
-                         "choose another size");
+    checkImageSize(gl, "image", width, height, "choose another size");
+    PRT_CHECK_EQ(options.samples, 1);
     const CameraFrame frame = makeCameraFrame(camera, width, height, bounds);
     if (!targets || targets->width != width || targets->height != height) {
         targets.reset();
@@ -141,15 +153,13 @@ const GlProgram& Renderer::State::useBaseProgram() {
     return *baseProgram;
 }
 
-// Over the pixels whose depth is greater than that of nothing. Without data: the base pass.
-void Renderer::State::drawLight(const TechniqueData* data) {
+// Over the pixels whose depth is greater than that of nothing, with a program in use.
+void Renderer::State::drawLight(const GlProgram& program, std::span<const SunLight> lit) {
     gl.DepthFunc(GL_LESS);
-    const GlProgram& program = data ? data->use() : useBaseProgram();
-    const size_t sunCount = data ? suns.size() : 0;
-    program.set("sunCount", int(sunCount));
-    for (size_t i = 0; i < sunCount; ++i) {
-        program.set(fmt::format("sunDirection[{}]", i).c_str(), suns[i].direction);
-        program.set(fmt::format("sunIrradiance[{}]", i).c_str(), suns[i].irradiance);
+    program.set("sunCount", int(lit.size()));
+    for (size_t i = 0; i < lit.size(); ++i) {
+        program.set(fmt::format("sunDirection[{}]", i).c_str(), lit[i].direction);
+        program.set(fmt::format("sunIrradiance[{}]", i).c_str(), lit[i].irradiance);
     }
     const std::pair<GLuint, GLuint> images[] = {{0, targets->place.name()},  {1, targets->normal.name()},
                                                 {2, targets->albedo.name()}, {3, targets->triangle.name()},
@@ -170,9 +180,7 @@ void Renderer::State::drawBackground(const CameraFrame& camera) {
     gl.DrawArrays(GL_TRIANGLES, 0, 3);
 }
 
-void Renderer::State::drawFrame(const CameraFrame& camera, const TechniqueData* data,
-                                const RenderOptions& options) {
-    drawSurface(camera, options);
+void Renderer::State::startLight() {
     const GLuint frame = targets->lightFrame.name();
     const GLfloat black[4] = {};
     gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, frame);
@@ -180,8 +188,29 @@ void Renderer::State::drawFrame(const CameraFrame& camera, const TechniqueData* 
     gl.BindVertexArray(vertexArray.name());
     gl.ClearNamedFramebufferfv(frame, GL_COLOR, 0, black);
     gl.ClearNamedFramebufferfv(frame, GL_COLOR, 1, black);
-    drawLight(data);
+}
+
+// Without data: the base pass.
+void Renderer::State::drawFrame(const CameraFrame& camera, const TechniqueData* data,
+                                const RenderOptions& options) {
+    drawSurface(camera, options);
+    startLight();
+    if (data)
+        drawLight(data->use(), suns);
+    else
+        drawLight(useBaseProgram(), {});
     if (background) drawBackground(camera);
+}
+
+void Renderer::State::drawPoints(const Camera& camera, const RenderOptions& options) {
+    if (!points) throw InputError("points", "no colours were set", "set them before drawing");
+    drawSurface(begin(camera, options), options);
+    startLight();
+    points->program.use();
+    points->program.set("gridSize", points->colours.grid.width, points->colours.grid.height);
+    gl.BindTextureUnit(4, points->colours.texture.name());
+    drawLight(points->program, {});
+    context.check("drawing");
 }
 
 TechniqueData& Renderer::State::dataOf(Technique technique) {
@@ -297,12 +326,7 @@ void Renderer::setBackground(const FloatImage& latLong, double rotationRad) {
     PRT_CHECK_EQ(latLong.channels, 3);
     State& s = *state_;
     s.context.makeCurrent();
-    const GLint edge = glInteger(s.gl, GL_MAX_TEXTURE_SIZE);
-    if (latLong.width < 1 || latLong.height < 1 || latLong.width > edge || latLong.height > edge)
-        throw InputError(
-            "background",
-            fmt::format("size {}x{} is outside 1x1 to {}x{}", latLong.width, latLong.height, edge, edge),
-            "scale it down");
+    checkImageSize(s.gl, "background", latLong.width, latLong.height, "scale it down");
     s.background = makeImage(s.gl, GL_RGBA32F, latLong.width, latLong.height);
     s.gl.TextureSubImage2D(s.background.name(), 0, 0, 0, latLong.width, latLong.height, GL_RGB, GL_FLOAT,
                            latLong.pixels.data());
@@ -320,6 +344,53 @@ RenderedFrame Renderer::render(const Camera& camera, Technique technique, const 
     frame.irradiance = readRgb(s.gl, s.targets->irradiance, options.width, options.height);
     s.context.check("reading the image back");
     return frame;
+}
+
+void Renderer::draw(const Camera& camera, Technique technique, const RenderOptions& options,
+                    const DisplayOptions& display, const DrawTarget& target) {
+    State& s = *state_;
+    const TechniqueData& data = s.ready(technique);
+    s.drawFrame(s.begin(camera, options), &data, options);
+    s.display.draw(s.targets->radiance.name(), options.width, options.height, display, target);
+    s.context.check("drawing");
+}
+
+void Renderer::setPointColours(const PointGrid& grid, std::span<const float> rgb, bool smooth) {
+    State& s = *state_;
+    s.context.makeCurrent();
+    checkGrid(grid, s.geometry.vertexCount(), s.hasAtlas, "colours of points");
+    CoefficientImage colours = uploadCoefficients(s.context, grid, 3, rgb, "colours of points");
+    std::string defines = "#define POINT_COLOURS\n";
+    if (grid.domain == PointDomain::Vertex) defines += "#define PER_VERTEX\n";
+    if (!smooth) {
+        defines += "#define NEAREST_POINT\n";
+        for (const GLenum filter : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER})
+            s.gl.TextureParameteri(colours.texture.name(), filter, GL_NEAREST);
+    }
+    s.points.emplace(PointColours{std::move(colours), GlProgram(s.gl, "screen.vert", "light.frag", defines)});
+}
+
+void Renderer::drawPoints(const Camera& camera, const RenderOptions& options, const DisplayOptions& display,
+                          const DrawTarget& target) {
+    State& s = *state_;
+    s.drawPoints(camera, options);
+    s.display.draw(s.targets->radiance.name(), options.width, options.height, display, target);
+    s.context.check("drawing");
+}
+
+FloatImage Renderer::renderPoints(const Camera& camera, const RenderOptions& options) {
+    State& s = *state_;
+    s.drawPoints(camera, options);
+    FloatImage image = readRgb(s.gl, s.targets->radiance, options.width, options.height);
+    s.context.check("reading the image back");
+    return image;
+}
+
+void Renderer::drawImage(const FloatImage& image, const DisplayOptions& display, const DrawTarget& target) {
+    State& s = *state_;
+    s.context.makeCurrent();
+    s.display.draw(image, display, target);
+    s.context.check("drawing");
 }
 
 SurfaceImage Renderer::surface(const Camera& camera, const RenderOptions& options) {

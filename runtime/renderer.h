@@ -1,5 +1,5 @@
 // Draws a bundle's mesh, lit through tables, into float images. Backs of triangles are not drawn, unless
-// their material is double-sided. One sample per pixel, at its centre.
+// their material is double-sided.
 #pragma once
 
 #include <memory>
@@ -21,6 +21,19 @@ namespace prt {
 struct RenderOptions {
     int width = 1280, height = 800;
     bool normalMap = true;
+    int samples = 1;  ///< per pixel: 1, at its centre
+};
+
+/// How radiance becomes the colours of a display; as toDisplay.
+struct DisplayOptions {
+    double exposureStops = 0;
+    ToneCurve toneCurve = ToneCurve::None;
+};
+
+/// Where a picture goes: a framebuffer of the renderer's context.
+struct DrawTarget {
+    unsigned framebuffer = 0;  ///< OpenGL's name; 0: the window's own
+    int x = 0, y = 0;          ///< lower left corner of the picture in it, pixels from its lower left corner
 };
 
 struct RenderedFrame {
@@ -77,6 +90,34 @@ class Renderer {
 
     /// @throws InputError  the technique was not added, or has no table or light
     RenderedFrame render(const Camera& camera, Technique technique, const RenderOptions& options);
+    /// The same frame, as a display shows it, into colour output 0 of a framebuffer: within 1/255 of
+    /// toDisplay of what render() gives, right way up; pixels outside of the picture stay. Values are sRGB
+    /// whatever the framebuffer's format is: it is written as it is, without conversion on writing.
+    /// @throws InputError  as render(); a target that is no complete framebuffer
+    void draw(const Camera& camera, Technique technique, const RenderOptions& options,
+              const DisplayOptions& display, const DrawTarget& target);
+
+    /// Colours of the points of a grid, to look at what is stored there (weights, coefficients, validity,
+    /// charts); replaces the previous ones.
+    /// @param grid    of the visibility or PCA data
+    /// @param rgb     [grid.count×3] linear; any numbers
+    /// @param smooth  interpolated between points; else each place has the colour of the nearest texel, or
+    /// of the corner with the largest barycentric coordinate
+    /// @throws InputError  the grid is not of this mesh, texture limits exceeded
+    void setPointColours(const PointGrid& grid, std::span<const float> rgb, bool smooth);
+    /// Those colours unlit, without albedo, tone or background, as draw() shows a frame.
+    /// @throws InputError  no colours were set; options or target as in draw()
+    void drawPoints(const Camera& camera, const RenderOptions& options, const DisplayOptions& display,
+                    const DrawTarget& target);
+    /// The same as numbers.
+    /// @return 3 channels; 0 where nothing is seen
+    /// @throws InputError  no colours were set; options as in render()
+    FloatImage renderPoints(const Camera& camera, const RenderOptions& options);
+    /// An image made elsewhere, shown the same way.
+    /// @param image  3 channels, or 4, the last of which is not shown; linear
+    /// @throws InputError  larger than OpenGL takes; target as in draw()
+    void drawImage(const FloatImage& image, const DisplayOptions& display, const DrawTarget& target);
+
     /// The points that render() shades: same geometry, textures, normal maps and filtering.
     SurfaceImage surface(const Camera& camera, const RenderOptions& options);
     /// Median time of a frame, ms, glFinish and a clock, after warm-up.

@@ -13,7 +13,7 @@ struct ShaderSource {
 /// All of them (made from runtime/shaders by CMake).
 std::span<const ShaderSource> shaderSources();
 
-/// A shader as the compiler takes it: version, defines, common.glsl, the file.
+/// A shader as the compiler takes it: version, defines, common.glsl, the file with what it includes.
 /// @param name  of a .vert or .frag file
 std::string shaderText(const std::string& name, const std::string& defines);
 

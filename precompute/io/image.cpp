@@ -1,5 +1,6 @@
 // 8-bit images: decoding, encoding and the way from linear light to display.
-// Sources: PNG, JPEG and WebP by stb and libwebp; IEC 61966-2-1 (sRGB).
+// Sources: PNG, JPEG and WebP by stb and libwebp; [IEC61966-2-1] sRGB; [Hill2016], [KhronosNeutral2024] tone
+// curves.
 #include "precompute/io/image.h"
 
 #include <fmt/format.h>
@@ -12,6 +13,7 @@
 #include <cstring>
 #include <limits>
 #include <memory>
+#include <utility>
 
 #include "precompute/base/check.h"
 #include "precompute/base/error.h"
@@ -20,6 +22,9 @@ namespace prt {
 namespace {
 
 constexpr int kMaxImageSize = 16384;
+
+constexpr std::pair<ToneCurve, std::string_view> kToneCurves[] = {
+    {ToneCurve::None, "none"}, {ToneCurve::Filmic, "filmic"}, {ToneCurve::Neutral, "neutral"}};
 
 void checkSize(int width, int height, const std::string& where) {
     if (width < 1 || height < 1) throw InputError(where, "image without pixels");
@@ -58,12 +63,38 @@ ByteImage decodeByStb(std::span<const uint8_t> encoded, const std::string& where
     return image;
 }
 
+// Of a value in [0, 1].
 uint8_t byteFromLinear(double linear) {
-    // Also takes NaN to 0.
-    if (!(linear > 0)) return 0;
-    const double display =
-        linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(std::min(linear, 1.0), 1 / 2.4) - 0.055;
-    return uint8_t(std::lround(255 * std::min(display, 1.0)));
+    const double display = linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1 / 2.4) - 0.055;
+    return uint8_t(std::lround(255 * display));
+}
+
+Vec3d withinDisplay(const Vec3d& colour) { return colour.cwiseMax(0.0).cwiseMin(1.0); }
+
+// The ACES reference and display transforms of one channel, fitted [Hill2016].
+double filmicChannel(double x) {
+    return (x * (x + 0.0245786) - 0.000090537) / (x * (0.983729 * x + 0.4329510) + 0.238081);
+}
+
+Vec3d filmic(const Vec3d& colour) {
+    constexpr double kMiddleGrey = 1.46193;  // filmicChannel(kMiddleGrey · 0.18) = 0.18
+    Mat3d in, out;
+    in << 0.59719, 0.35458, 0.04823, 0.07600, 0.90834, 0.01566, 0.02840, 0.13383, 0.83777;
+    out << 1.60475, -0.53108, -0.07367, -0.10208, 1.10813, -0.00605, -0.00327, -0.07276, 1.07602;
+    return withinDisplay(out * (in * (kMiddleGrey * colour)).unaryExpr(&filmicChannel));
+}
+
+Vec3d neutral(const Vec3d& colour) {
+    constexpr double kReflection = 0.04, kStart = 0.8 - kReflection, kDesaturation = 0.15;
+    const double least = colour.minCoeff();
+    const double offset = least < 2 * kReflection ? least - least * least / (4 * kReflection) : kReflection;
+    const Vec3d lower = colour - Vec3d::Constant(offset);
+    const double peak = lower.maxCoeff();
+    if (peak < kStart) return lower;
+    constexpr double kRoom = 1 - kStart;
+    const double newPeak = 1 - kRoom * kRoom / (peak + kRoom - kStart);
+    const double white = 1 - 1 / (kDesaturation * (peak - newPeak) + 1);
+    return withinDisplay((1 - white) * (newPeak / peak) * lower + Vec3d::Constant(white * newPeak));
 }
 
 }  // namespace
@@ -101,17 +132,46 @@ std::vector<uint8_t> encodePng(const ByteImage& image) {
     return bytes;
 }
 
-ByteImage toDisplay(const FloatImage& image, double exposureStops) {
+std::string_view toneCurveName(ToneCurve curve) {
+    const auto found = std::ranges::find(kToneCurves, curve, &std::pair<ToneCurve, std::string_view>::first);
+    PRT_CHECK(found != std::end(kToneCurves));
+    return found->second;
+}
+
+std::optional<ToneCurve> toneCurveFromName(std::string_view name) {
+    for (const auto& [value, known] : kToneCurves)
+        if (known == name) return value;
+    return std::nullopt;
+}
+
+Vec3d toneMapped(const Vec3d& linear, ToneCurve curve) {
+    // Far beyond white; its square is still a number. NaN is not greater than 0.
+    static constexpr double kBrightest = 1e6;
+    const Vec3d colour = linear.unaryExpr([](double x) { return x > 0 ? std::min(x, kBrightest) : 0.0; });
+    switch (curve) {
+        case ToneCurve::None:
+            break;
+        case ToneCurve::Filmic:
+            return filmic(colour);
+        case ToneCurve::Neutral:
+            return neutral(colour);
+    }
+    return withinDisplay(colour);
+}
+
+ByteImage toDisplay(const FloatImage& image, double exposureStops, ToneCurve curve) {
     PRT_CHECK(image.channels == 3 || image.channels == 4);
     const double scale = std::exp2(exposureStops);
     ByteImage display{image.width, image.height, image.channels, {}};
     display.pixels.resize(image.pixels.size());
     const size_t channels = size_t(image.channels);
-    for (size_t i = 0; i < image.pixels.size(); ++i) {
-        const double value = image.pixels[i];
-        display.pixels[i] = i % channels == 3
-                                ? uint8_t(std::lround(255 * (value > 0 ? std::min(value, 1.0) : 0.0)))
-                                : byteFromLinear(value * scale);
+    for (size_t i = 0; i + channels <= image.pixels.size(); i += channels) {
+        const float* from = &image.pixels[i];
+        const Vec3d colour = toneMapped(scale * Vec3d(from[0], from[1], from[2]), curve);
+        for (size_t c = 0; c < 3; ++c) display.pixels[i + c] = byteFromLinear(colour[int(c)]);
+        if (channels == 4)
+            display.pixels[i + 3] =
+                uint8_t(std::lround(255 * (from[3] > 0 ? std::min(double(from[3]), 1.0) : 0.0)));
     }
     return display;
 }

@@ -4,6 +4,7 @@
 //   UNIFORM_PRODUCTS   E_c = Σ_j f_j(n) (P_jc,mean + Σ_i k_i P_jci), f functions of the clamped cosine
 //   TWO_BANDS          E_c = ∫ V L_c max(0, n·ω) dω, V and L of two bands
 //   BASE_PASS          E_c = 1: what a frame costs without its light
+//   POINT_COLOURS      no light: the first three values of the point as they are
 // [IwanickiSloan2012, Sec. 3 to 5]
 layout(binding = 0) uniform sampler2D places;
 layout(binding = 1) uniform sampler2D normals;
@@ -69,7 +70,10 @@ ivec2 gridPoint(uint index) {
 Points pointsAt(ivec2 pixel, vec4 place) {
     const uint first = texelFetch(triangles, pixel, 0).r * 3u;
     // Pixels whose centre lies a little outside of the triangle must not extrapolate.
-    const vec3 b = max(vec3(1.0 - place.x - place.y, place.xy), 0.0);
+    vec3 b = max(vec3(1.0 - place.x - place.y, place.xy), 0.0);
+#ifdef NEAREST_POINT
+    b = b.x >= max(b.y, b.z) ? vec3(1.0, 0.0, 0.0) : b.y >= b.z ? vec3(0.0, 1.0, 0.0) : vec3(0.0, 0.0, 1.0);
+#endif
     return Points(ivec2[3](gridPoint(first), gridPoint(first + 1u), gridPoint(first + 2u)), b / (b.x + b.y + b.z));
 }
 
@@ -147,6 +151,8 @@ vec3 irradianceAt(Points points, vec3 n) {
 }
 #elif defined(BASE_PASS)
 vec3 irradianceAt(Points points, vec3 n) { return vec3(1.0); }
+#elif defined(POINT_COLOURS)
+vec3 irradianceAt(Points points, vec3 n) { return valuesAt(coefficients, points, 0).rgb; }
 #elif defined(PRECONVOLVED)
 vec3 irradianceAt(Points points, vec3 n) { return valuesAt(coefficients, points, 0).r * tableAt(tablePoint(n), 0).rgb; }
 #else
@@ -172,5 +178,9 @@ void main() {
     const vec3 irradiance = sunlight(points, normal) + irradianceAt(points, normal);
     // Measured as it is; shown without the negative lobes that truncation leaves in the dark.
     outIrradiance = vec4(irradiance, 1.0);
+#ifdef POINT_COLOURS
+    outRadiance = outIrradiance;
+#else
     outRadiance = vec4(texelFetch(albedos, pixel, 0).rgb / kPi * irradiance, 1.0);
+#endif
 }

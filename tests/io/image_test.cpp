@@ -125,5 +125,90 @@ TEST(ToDisplay, UndefinedIsBlack) {
     EXPECT_EQ(toDisplay({1, 1, 3, {nan, infinity, -infinity}}, 0).pixels, (std::vector<uint8_t>{0, 255, 0}));
 }
 
+TEST(ToneCurves, NamesGoBothWays) {
+    for (const ToneCurve curve : {ToneCurve::None, ToneCurve::Filmic, ToneCurve::Neutral})
+        EXPECT_EQ(toneCurveFromName(toneCurveName(curve)), curve);
+    EXPECT_EQ(toneCurveName(ToneCurve::Filmic), "filmic");
+    EXPECT_EQ(toneCurveFromName("Filmic"), std::nullopt);
+    EXPECT_EQ(toneCurveFromName(""), std::nullopt);
+}
+
+class EachToneCurve : public testing::TestWithParam<ToneCurve> {
+  protected:
+    double grey(double x) const {
+        const Vec3d mapped = toneMapped(Vec3d::Constant(x), GetParam());
+        // Rows of the filmic matrices sum to one, but for their five digits.
+        EXPECT_NEAR(mapped.x(), mapped.y(), 2e-5);
+        EXPECT_NEAR(mapped.x(), mapped.z(), 2e-5);
+        return mapped.x();
+    }
+};
+
+// Steps of 1/2000 of a stop: neither a fall nor a jump, from black to white.
+TEST_P(EachToneCurve, IsMonotoneAndContinuousInGrey) {
+    EXPECT_EQ(grey(0), 0);
+    double before = 0;
+    for (double stops = -16; stops <= 16; stops += 0.0005) {
+        const double now = grey(std::exp2(stops));
+        ASSERT_GE(now, before) << stops;
+        // d(curve)/d(stops) = x ln 2 · slope; no curve here has x · slope above 1.
+        ASSERT_LT(now - before, 4e-4) << stops;
+        before = now;
+    }
+    EXPECT_GT(before, 0.999);
+}
+
+TEST_P(EachToneCurve, KeepsColoursInRange) {
+    const double values[] = {-1e30, -1,  0, 1e-6, 0.01, 0.079, 0.081,
+                             0.5,   0.8, 1, 7,    1e4,  1e30,  std::numeric_limits<double>::infinity()};
+    for (const double r : values)
+        for (const double g : values)
+            for (const double b : values) {
+                const Vec3d mapped = toneMapped(Vec3d(r, g, b), GetParam());
+                ASSERT_TRUE((mapped.array() >= 0).all() && (mapped.array() <= 1).all())
+                    << r << " " << g << " " << b;
+            }
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    EXPECT_EQ(toneMapped(Vec3d(nan, -1, 0), GetParam()), Vec3d(0, 0, 0));
+}
+
+TEST_P(EachToneCurve, IsAppliedAfterExposure) {
+    const FloatImage image{2, 1, 4, {0.3f, 0.1f, 0.05f, 0.25f, 0.9f, 4, 2, 1}};
+    const ByteImage display = toDisplay(image, 1.5, GetParam());
+    for (size_t i = 0; i < 8; i += 4) {
+        const float* p = &image.pixels[i];
+        const Vec3d mapped = toneMapped(std::exp2(1.5) * Vec3d(p[0], p[1], p[2]), GetParam());
+        for (size_t c = 0; c < 3; ++c)
+            EXPECT_EQ(display.pixels[i + c], uint8_t(std::lround(255 * srgbOf(mapped[int(c)]))));
+        EXPECT_EQ(display.pixels[i + 3], i == 0 ? 64 : 255);
+    }
+}
+INSTANTIATE_TEST_SUITE_P(Curves, EachToneCurve,
+                         testing::Values(ToneCurve::None, ToneCurve::Filmic, ToneCurve::Neutral),
+                         [](const auto& curve) { return std::string(toneCurveName(curve.param)); });
+
+TEST(ToneCurves, FixedPoints) {
+    const auto grey = [](double x, ToneCurve curve) { return toneMapped(Vec3d::Constant(x), curve).x(); };
+    EXPECT_NEAR(grey(0.18, ToneCurve::Filmic), 0.18, 1e-5);
+    EXPECT_NEAR(grey(0.18, ToneCurve::None), 0.18, 1e-15);
+    // Khronos: 0.04 is taken off above 0.08, quadratically below; from 0.8 on highlights are compressed to
+    // 1 − 0.24² / (x − 0.04 + 0.24 − 0.76).
+    EXPECT_NEAR(grey(0.18, ToneCurve::Neutral), 0.14, 1e-15);
+    EXPECT_NEAR(grey(0.04, ToneCurve::Neutral), 6.25 * 0.04 * 0.04, 1e-15);
+    EXPECT_NEAR(grey(0.8, ToneCurve::Neutral), 0.76, 1e-15);
+    EXPECT_NEAR(grey(4, ToneCurve::Neutral), 1 - 0.0576 / 3.44, 1e-12);
+}
+
+TEST(ToneCurves, NeutralKeepsColoursBelowItsShoulder) {
+    const Vec3d colour(0.7, 0.3, 0.12);
+    EXPECT_LT((toneMapped(colour, ToneCurve::Neutral) - (colour - Vec3d::Constant(0.04))).norm(), 1e-15);
+}
+
+TEST(ToneCurves, BrightColoursGoToWhite) {
+    for (const ToneCurve curve : {ToneCurve::Filmic, ToneCurve::Neutral})
+        EXPECT_GT(toneMapped(Vec3d(3000, 100, 100), curve).minCoeff(), 0.9);
+    EXPECT_EQ(toneMapped(Vec3d(3000, 0.5, 0.5), ToneCurve::None), Vec3d(1, 0.5, 0.5));
+}
+
 }  // namespace
 }  // namespace prt

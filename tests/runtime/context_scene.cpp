@@ -45,10 +45,14 @@ std::unique_ptr<Renderer> Showcase::makeRenderer(GlContext& context) const {
     return renderer;
 }
 
-RenderedFrame Showcase::draw(Renderer& renderer, Technique technique) const {
+Camera Showcase::camera() {
     Camera camera;
     camera.eye = {1, 1.5f, 4};
-    return renderer.render(camera, technique, {80, 60, true});
+    return camera;
+}
+
+RenderedFrame Showcase::draw(Renderer& renderer, Technique technique) const {
+    return renderer.render(camera(), technique, options());
 }
 
 double relativeRmse(const FloatImage& a, const FloatImage& b) {

@@ -14,6 +14,9 @@ class Showcase {
     /// A renderer that is ready to draw by unc and pca.
     std::unique_ptr<Renderer> makeRenderer(GlContext& context) const;
     RenderedFrame draw(Renderer& renderer, Technique technique) const;
+    /// What draw() gives to the renderer.
+    static Camera camera();
+    static RenderOptions options() { return {80, 60, true}; }
 
   private:
     Scene scene_;
