@@ -83,6 +83,8 @@ class GlContext {
     explicit GlContext(std::unique_ptr<State> state);
     void listen();
     std::unique_ptr<State> state_;
+    friend class GlStateGuard;
+    mutable bool guarded_ = false;  // a guard lives
 };
 
 }  // namespace prt

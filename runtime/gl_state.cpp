@@ -87,10 +87,11 @@ struct Buffer {
 }  // namespace
 
 struct GlStateGuard::State {
-    explicit State(const GlContext& context) : gl(context.gl()) {
+    State(const GlContext& context, bool& isGuarded) : gl(context.gl()), guarded(isGuarded) {
         takeErrors();
         save();
         setNormal();
+        guarded = true;
     }
 
     void takeErrors() const {
@@ -163,6 +164,7 @@ struct GlStateGuard::State {
     }
 
     void restore() const {
+        guarded = false;
         gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, drawFramebuffer);
         gl.BindFramebuffer(GL_READ_FRAMEBUFFER, readFramebuffer);
         for (size_t i = 0; i < viewports.size(); ++i) gl.ViewportIndexedfv(GLuint(i), viewports[i].data());
@@ -200,6 +202,7 @@ struct GlStateGuard::State {
     }
 
     const GlFunctions& gl;
+    bool& guarded;
     GLuint drawFramebuffer = 0, readFramebuffer = 0, program = 0, vertexArray = 0;
     GLuint packBuffer = 0, unpackBuffer = 0;
     std::vector<std::array<GLfloat, 4>> viewports;
@@ -215,7 +218,8 @@ struct GlStateGuard::State {
 
 GlStateGuard::GlStateGuard(const GlContext& context) {
     context.makeCurrent();
-    if (context.kind() == GlContextKind::Current) state_ = std::make_unique<State>(context);
+    if (context.kind() == GlContextKind::Current && !context.guarded_)
+        state_ = std::make_unique<State>(context, context.guarded_);
 }
 
 GlStateGuard::~GlStateGuard() {

@@ -8,8 +8,9 @@
 namespace prt {
 
 /// While it lives, the context has the state that the runtime expects; then it has again what it had before.
-/// One around all that is drawn or uploaded in a frame is enough, and nothing happens for contexts that
-/// GlContext made itself.
+/// Every function of Renderer keeps one of its own. One around a whole frame saves time, as those inside do
+/// nothing then, but what the caller sets meanwhile reaches into the pictures and is not put back. Nothing
+/// happens for contexts that GlContext made itself.
 ///
 /// Kept and set: framebuffers, viewports, first depth range, clip control, enables (depth, stencil and
 /// scissor tests, blending of buffers 0 to 7, culling, depth clamp, polygon offset, rasterizer discard,
@@ -30,7 +31,7 @@ class GlStateGuard {
 
   private:
     struct State;
-    std::unique_ptr<State> state_;  // none for a context of our own
+    std::unique_ptr<State> state_;  // none for a context of our own, and within another guard
 };
 
 }  // namespace prt

@@ -16,6 +16,7 @@
 #include "runtime/camera_frame.h"
 #include "runtime/display_pass.h"
 #include "runtime/gl_objects.h"
+#include "runtime/gl_state.h"
 #include "runtime/scene_images.h"
 #include "runtime/technique_data.h"
 
@@ -120,7 +121,6 @@ struct Renderer::State {
 };
 
 CameraFrame Renderer::State::begin(const Camera& camera, const RenderOptions& options) {
-    context.makeCurrent();
     const int width = options.width, height = options.height;
     checkImageSize(gl, "image", width, height, "choose another size");
     PRT_CHECK_EQ(options.samples, 1);
@@ -230,7 +230,7 @@ const TechniqueData& Renderer::State::ready(Technique technique) {
 
 Renderer::Renderer(GlContext& context, const Scene& scene, const VisibilityMap* visibility,
                    const PcaMap* pca) {
-    context.makeCurrent();
+    const GlStateGuard guard(context);
     const size_t vertices = scene.vertexCount();
     if (visibility) checkGrid(visibility->grid, vertices, !scene.uv1.empty(), "visibility");
     if (pca) checkGrid(pca->grid, vertices, !scene.uv1.empty(), "PCA weights");
@@ -248,7 +248,7 @@ Renderer::~Renderer() {
 
 template <class Map>
 void Renderer::State::add(Technique technique, const Map& map, int number, int has) {
-    context.makeCurrent();
+    const GlStateGuard guard(context);
     checkGrid(map.grid, geometry.vertexCount(), hasAtlas,
               readsVisibility(technique) ? "visibility" : "PCA weights");
     if (number > 0 && number != has)
@@ -276,7 +276,7 @@ void Renderer::setTable(const NormalTable& table) {
 
 void Renderer::setTable(Technique technique, const NormalTable& table) {
     State& s = *state_;
-    s.context.makeCurrent();
+    const GlStateGuard guard(s.context);
     if (!s.techniques.contains(technique))
         throw InputError(techniqueName(technique),
                          fmt::format("a {} table was given, but {}", tableKindName(table.kind),
@@ -287,7 +287,7 @@ void Renderer::setTable(Technique technique, const NormalTable& table) {
 void Renderer::setLight(Technique technique, const LiveLight& light, const std::vector<double>& weights,
                         double rotationRad) {
     State& s = *state_;
-    s.context.makeCurrent();
+    const GlStateGuard guard(s.context);
     TechniqueData& data = s.dataOf(technique);
     if (technique.kind == TechniqueKind::Unc)
         data.setTable(light.lightCosineTable(weights, rotationRad, data.shOrder()));
@@ -305,7 +305,7 @@ uint64_t Renderer::lightRevision(Technique technique) const {
 
 void Renderer::setSuns(std::span<const SunLight> suns, const PointGrid& grid) {
     State& s = *state_;
-    s.context.makeCurrent();
+    const GlStateGuard guard(s.context);
     if (suns.size() > size_t(kMostSuns))
         throw InputError(
             "suns", fmt::format("{} are more than the {} that are drawn at a time", suns.size(), kMostSuns));
@@ -325,7 +325,7 @@ void Renderer::setSuns(std::span<const SunLight> suns, const PointGrid& grid) {
 void Renderer::setBackground(const FloatImage& latLong, double rotationRad) {
     PRT_CHECK_EQ(latLong.channels, 3);
     State& s = *state_;
-    s.context.makeCurrent();
+    const GlStateGuard guard(s.context);
     checkImageSize(s.gl, "background", latLong.width, latLong.height, "scale it down");
     s.background = makeImage(s.gl, GL_RGBA32F, latLong.width, latLong.height);
     s.gl.TextureSubImage2D(s.background.name(), 0, 0, 0, latLong.width, latLong.height, GL_RGB, GL_FLOAT,
@@ -336,6 +336,7 @@ void Renderer::setBackground(const FloatImage& latLong, double rotationRad) {
 
 RenderedFrame Renderer::render(const Camera& camera, Technique technique, const RenderOptions& options) {
     State& s = *state_;
+    const GlStateGuard guard(s.context);
     const TechniqueData& data = s.ready(technique);
     s.drawFrame(s.begin(camera, options), &data, options);
     s.context.check("drawing");
@@ -349,6 +350,7 @@ RenderedFrame Renderer::render(const Camera& camera, Technique technique, const 
 void Renderer::draw(const Camera& camera, Technique technique, const RenderOptions& options,
                     const DisplayOptions& display, const DrawTarget& target) {
     State& s = *state_;
+    const GlStateGuard guard(s.context);
     const TechniqueData& data = s.ready(technique);
     s.drawFrame(s.begin(camera, options), &data, options);
     s.display.draw(s.targets->radiance.name(), options.width, options.height, display, target);
@@ -357,7 +359,7 @@ void Renderer::draw(const Camera& camera, Technique technique, const RenderOptio
 
 void Renderer::setPointColours(const PointGrid& grid, std::span<const float> rgb, bool smooth) {
     State& s = *state_;
-    s.context.makeCurrent();
+    const GlStateGuard guard(s.context);
     checkGrid(grid, s.geometry.vertexCount(), s.hasAtlas, "colours of points");
     CoefficientImage colours = uploadCoefficients(s.context, grid, 3, rgb, "colours of points");
     std::string defines = "#define POINT_COLOURS\n";
@@ -373,6 +375,7 @@ void Renderer::setPointColours(const PointGrid& grid, std::span<const float> rgb
 void Renderer::drawPoints(const Camera& camera, const RenderOptions& options, const DisplayOptions& display,
                           const DrawTarget& target) {
     State& s = *state_;
+    const GlStateGuard guard(s.context);
     s.drawPoints(camera, options);
     s.display.draw(s.targets->radiance.name(), options.width, options.height, display, target);
     s.context.check("drawing");
@@ -380,6 +383,7 @@ void Renderer::drawPoints(const Camera& camera, const RenderOptions& options, co
 
 FloatImage Renderer::renderPoints(const Camera& camera, const RenderOptions& options) {
     State& s = *state_;
+    const GlStateGuard guard(s.context);
     s.drawPoints(camera, options);
     FloatImage image = readRgb(s.gl, s.targets->radiance, options.width, options.height);
     s.context.check("reading the image back");
@@ -388,13 +392,14 @@ FloatImage Renderer::renderPoints(const Camera& camera, const RenderOptions& opt
 
 void Renderer::drawImage(const FloatImage& image, const DisplayOptions& display, const DrawTarget& target) {
     State& s = *state_;
-    s.context.makeCurrent();
+    const GlStateGuard guard(s.context);
     s.display.draw(image, display, target);
     s.context.check("drawing");
 }
 
 SurfaceImage Renderer::surface(const Camera& camera, const RenderOptions& options) {
     State& s = *state_;
+    const GlStateGuard guard(s.context);
     s.drawSurface(s.begin(camera, options), options);
     s.context.check("drawing");
     SurfaceImage image;
@@ -436,6 +441,7 @@ double Renderer::frameMilliseconds(const Camera& camera, std::optional<Technique
                                    const RenderOptions& options, int frames, int warmUpFrames) {
     PRT_CHECK_LT(0, frames);
     State& s = *state_;
+    const GlStateGuard guard(s.context);
     const TechniqueData* data = technique ? &s.ready(*technique) : nullptr;
     const CameraFrame view = s.begin(camera, options);
     std::vector<double> times;

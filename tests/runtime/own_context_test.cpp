@@ -163,6 +163,83 @@ TEST(OwnContext, SamePictureAndStateAsBefore) {
     EXPECT_TRUE(own->isCurrent());
 }
 
+/// The first pixel's colour.
+std::array<GLubyte, 4> firstPixel(const GlFunctions& gl, const GlObject& image) {
+    std::vector<GLubyte> rgba(80 * 60 * 4);
+    gl.GetTextureImage(image.name(), 0, GL_RGBA, GL_UNSIGNED_BYTE, GLsizei(rgba.size()), rgba.data());
+    return {rgba[0], rgba[1], rgba[2], rgba[3]};
+}
+
+// Without a guard of the caller's: every function of the renderer keeps one.
+TEST(OwnContext, EveryFunctionLeavesTheState) {
+    const Showcase showcase(PointDomain::Texel);
+    const RenderedFrame expected = expectedFrame(showcase, Technique::Unc);
+    MAKE_OWN_EGL(own);
+    GlContext context = GlContext::ofCaller(own->getProc());
+    const GlFunctions& gl = context.gl();
+    const GlObject canvas = makeImage(gl, GL_RGBA8, 80, 60), frame = makeFramebuffer(gl);
+    gl.NamedFramebufferTexture(frame.name(), GL_COLOR_ATTACHMENT0, canvas.name(), 0);
+    std::unique_ptr<Renderer> renderer;
+    RenderedFrame rendered;
+    const LiveLight light({patchSky(0)}, 4, {});
+    const PointGrid grid = texelGrid(16, 16);
+    const SunLight sun{Vec3f::UnitY(), Vec3f::Ones(), std::vector<float>(grid.count, 1.0f)};
+    const Camera camera = Showcase::camera();
+    const RenderOptions options = Showcase::options();
+    const DrawTarget target{frame.name(), 0, 0};
+    const std::pair<const char*, std::function<void()>> calls[] = {
+        {"Renderer, setTable, setBackground", [&] { renderer = showcase.makeRenderer(context); }},
+        {"render", [&] { rendered = showcase.draw(*renderer, Technique::Unc); }},
+        {"surface", [&] { renderer->surface(camera, options); }},
+        {"frameMilliseconds", [&] { renderer->frameMilliseconds(camera, std::nullopt, options, 1); }},
+        {"setPointColours", [&] { renderer->setPointColours(grid, std::vector<float>(768, 1.0f), false); }},
+        {"renderPoints", [&] { renderer->renderPoints(camera, options); }},
+        {"drawPoints", [&] { renderer->drawPoints(camera, options, {}, target); }},
+        {"drawImage", [&] { renderer->drawImage(expected.irradiance, {}, target); }},
+        {"draw", [&] { renderer->draw(camera, Technique::Unc, options, {}, target); }},
+        {"setLight", [&] { renderer->setLight(Technique::Unc, light, {1.0}, 0.5); }},
+        {"setSuns",
+         [&] {
+             renderer->setSuns({&sun, 1}, grid);
+         }},
+        {"~Renderer", [&] { renderer.reset(); }}};
+    {
+        const Disorder disorder(gl);
+        const std::vector<GLint> before = state(gl);
+        for (const auto& [name, call] : calls) {
+            call();
+            EXPECT_EQ(state(gl), before) << name;
+            context.check(name);
+        }
+    }
+    const GlStateGuard guard(context);  // to read what was drawn
+    EXPECT_LT(relativeRmse(expected.radiance, rendered.radiance), 1e-3);
+    const ByteImage shown = toDisplay(expected.radiance, 0);
+    const std::array<GLubyte, 4> lowest = firstPixel(gl, canvas);
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(lowest[size_t(c)], shown.pixels[size_t(59 * 80 * 3 + c)], 1);
+}
+
+TEST(OwnContext, GuardsWithinAGuardDoNothing) {
+    MAKE_OWN_EGL(own);
+    const GlContext context = GlContext::ofCaller(own->getProc());
+    const GlFunctions& gl = context.gl();
+    gl.Enable(GL_SCISSOR_TEST);
+    {
+        const GlStateGuard outer(context);
+        EXPECT_FALSE(gl.IsEnabled(GL_SCISSOR_TEST));
+        gl.Enable(GL_SCISSOR_TEST);
+        { const GlStateGuard inner(context); }
+        EXPECT_TRUE(gl.IsEnabled(GL_SCISSOR_TEST));
+        gl.Disable(GL_SCISSOR_TEST);
+    }
+    EXPECT_TRUE(gl.IsEnabled(GL_SCISSOR_TEST));
+    {
+        const GlStateGuard next(context);
+        EXPECT_FALSE(gl.IsEnabled(GL_SCISSOR_TEST));
+    }
+    gl.Disable(GL_SCISSOR_TEST);
+}
+
 TEST(OwnContext, StaysAliveAndCurrent) {
     MAKE_OWN_EGL(own);
     {

@@ -128,6 +128,20 @@ std::vector<float> hemisphereSh(int shOrder, const Vec3f& normal) {
     return result;
 }
 
+Environment patchSky(int number) {
+    constexpr int kWidth = 64, kHeight = 32;
+    Environment sky;
+    sky.name = "patch" + std::to_string(number);
+    sky.contentHash = sky.name;
+    sky.image = {kWidth, kHeight, 3, std::vector<float>(size_t(kWidth * kHeight * 3), 0.2f)};
+    for (int y = 0; y < 6; ++y)
+        for (int x = 0; x < 10; ++x) {
+            float* texel = sky.image.at((23 * number + 20 + x) % kWidth, 3 + (5 * number) % 11 + y);
+            for (int c = 0; c < 3; ++c) texel[c] = float(2 + (3 * number + 4 * c) % 9);
+        }
+    return sky;
+}
+
 NormalTable lightCosineTable(const std::function<Vec3f(const Vec3d&)>& light, int shOrder, int size) {
     EnvironmentSh environment;
     environment.shOrder = tableEnvironmentShOrder(shOrder);

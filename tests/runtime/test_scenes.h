@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "precompute/io/environment_file.h"
 #include "precompute/io/image.h"
 #include "precompute/io/scene.h"
 #include "precompute/io/table_file.h"
@@ -36,6 +37,9 @@ VisibilityMap noisyVisibility(const PointGrid& grid, int shOrder, unsigned seed)
 std::vector<float> hemisphereSh(int shOrder, const Vec3f& normal);
 
 PointGrid texelGrid(int width, int height);
+
+/// A dim sky with a bright patch, at another place and of another colour for every number.
+Environment patchSky(int number);
 
 /// Light-cosine table of an environment given as a function of the direction.
 NormalTable lightCosineTable(const std::function<Vec3f(const Vec3d&)>& light, int shOrder, int size);
