@@ -25,6 +25,8 @@ const std::vector<MeasureCommand> kMeasureCommands = {
     {"compression", "Iwanicki & Sloan Figs. 5 and 6: error, bytes and work of compressed visibility",
      runMeasureCompression},
     {"error", "error of a bundle by stage against ray-traced truth, and which knob to turn", runMeasureError},
+    {"frame-time", "Iwanicki & Sloan Sec. 5: time of a frame by technique, base pass subtracted",
+     runMeasureFrameTime},
     {"parameterization", "Iwanicki & Sloan Fig. 8: error of tables over the sphere by layout and size",
      runMeasureParameterization},
     {"product", "products of expansions: time, non-zeros, multiplications", runMeasureProduct},

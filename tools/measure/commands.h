@@ -5,6 +5,7 @@ namespace prt::tools {
 
 void runMeasureBake(int argc, char** argv);
 void runMeasureError(int argc, char** argv);
+void runMeasureFrameTime(int argc, char** argv);
 void runMeasureParameterization(int argc, char** argv);
 void runMeasureBasis(int argc, char** argv);
 void runMeasureCompression(int argc, char** argv);

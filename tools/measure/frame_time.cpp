@@ -1,0 +1,97 @@
+// The table of frame times of [IwanickiSloan2012, Sec. 5].
+#include "tools/measure/frame_time.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "precompute/base/check.h"
+
+namespace prt::tools {
+
+FrameSamples sampleFrames(Renderer& renderer, const Camera& camera, const RenderOptions& options,
+                          const std::vector<Technique>& techniques, int rounds) {
+    PRT_CHECK_LE(1, rounds);
+    FrameSamples samples{{}, std::vector<std::vector<double>>(techniques.size())};
+    const auto draw = [&](std::optional<Technique> technique) {
+        return renderer.frameMilliseconds(camera, technique, options, 1, 0);
+    };
+    draw(std::nullopt);  // shaders are compiled for the state they meet first
+    for (const Technique technique : techniques) draw(technique);
+    for (int round = 0; round < rounds; ++round) {
+        samples.base.push_back(draw(std::nullopt));
+        for (size_t i = 0; i < techniques.size(); ++i) {
+            const size_t next = (size_t(round) + i) % techniques.size();
+            samples.techniques[next].push_back(draw(techniques[next]));
+        }
+    }
+    return samples;
+}
+
+Spread spreadOf(std::vector<double> values) {
+    PRT_CHECK(!values.empty());
+    std::ranges::sort(values);
+    const auto at = [&](double share) {
+        const double place = share * double(values.size() - 1);
+        const size_t low = size_t(place), high = std::min(low + 1, values.size() - 1);
+        return std::lerp(values[low], values[high], place - double(low));
+    };
+    return {at(0.5), at(0.25), at(0.75)};
+}
+
+FrameTimes summarizeFrames(const FrameSamples& samples, std::optional<size_t> reference) {
+    constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+    FrameTimes times{spreadOf(samples.base), {}};
+    for (const std::vector<double>& frames : samples.techniques) {
+        PRT_CHECK_EQ(frames.size(), samples.base.size());
+        std::vector<double> light, ratios;
+        for (size_t round = 0; round < frames.size(); ++round) {
+            light.push_back(frames[round] - samples.base[round]);
+            if (!reference) continue;
+            const double unit = samples.techniques[*reference][round] - samples.base[round];
+            // A base pass that was disturbed may exceed a technique's frame: such a round says nothing.
+            if (unit > 0) ratios.push_back(light.back() / unit);
+        }
+        times.techniques.push_back({spreadOf(frames).median, spreadOf(light),
+                                    ratios.empty() ? Spread{kNone, kNone, kNone} : spreadOf(ratios)});
+    }
+    return times;
+}
+
+double coveringDistance(const std::function<double(double)>& coverage, double wanted) {
+    double best = 1, most = -1;
+    for (double distance = 1; distance >= 0.1; distance /= 1.1) {
+        const double covered = coverage(distance);
+        if (covered >= wanted) return distance;
+        if (covered > most) {
+            most = covered;
+            best = distance;
+        }
+    }
+    return best;
+}
+
+double coveredShare(const SurfaceImage& surface) {
+    const auto covered = std::ranges::count_if(surface.triangle, [](uint32_t t) { return t != kNoTriangle; });
+    return double(covered) / double(surface.pixels());
+}
+
+std::unique_ptr<GlContext> makeContext(std::string_view name) {
+    if (name == glContextKindName(GlContextKind::Window))
+        return std::make_unique<GlContext>(GlWindowOptions{.visible = false});
+    return std::make_unique<GlContext>(name == glContextKindName(GlContextKind::Egl) ? GlContextKind::Egl
+                                                                                     : GlContextKind::OsMesa);
+}
+
+double paperMilliseconds(std::string_view name) {
+    constexpr std::pair<std::string_view, double> kTable[] = {
+        {"unc6", 8.19},  {"unc4", 3.33},         {"unc3", 2.75},
+        {"pca4", 1.40},  {"pca8", 2.08},         {"pca16", 3.61},
+        {"pca24", 5.56}, {"sh-lightmap", 0.846}, {"preconvolved-ao", 0.648},
+        {"sh2", 0.607}};
+    for (const auto& [technique, milliseconds] : kTable)
+        if (technique == name) return milliseconds;
+    return std::numeric_limits<double>::quiet_NaN();
+}
+
+}  // namespace prt::tools
