@@ -4,8 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
-#include <numbers>
 
 #include "compress/tables/normal_tables.h"
 #include "precompute/base/atomic_file.h"
@@ -18,16 +16,10 @@
 #include "tools/comparison.h"
 #include "tools/exposure.h"
 #include "tools/measure/compression_sheet.h"
+#include "tools/measure/picture.h"
 
 namespace prt::tools {
 namespace {
-
-constexpr float kDifferenceScale = 4;
-
-struct Picture {
-    FloatImage radiance;
-    std::vector<float> irradiance;  // [pixels×3]
-};
 
 NormalTable lightCosineTable(const EnvironmentSh& light, int shOrder, int size) {
     NormalTable table;
@@ -71,12 +63,7 @@ class View {
             makeReferenceDirections({&environment_, 1}, rotations, view_.referenceRays);
         Picture picture;
         picture.irradiance = traceReference(scene_.caster(), surface, directions)[0];
-        picture.radiance = {surface.width, surface.height, 3, std::vector<float>(3 * surface.pixels(), 0.0f)};
-        for (size_t p = 0; p < surface.pixels(); ++p)
-            if (surface.triangle[p] != kNoTriangle)
-                for (size_t c = 0; c < 3; ++c)
-                    picture.radiance.pixels[3 * p + c] =
-                        surface.albedo[p][int(c)] * picture.irradiance[3 * p + c] / std::numbers::pi_v<float>;
+        picture.radiance = radianceOf(picture.irradiance, surface);
         paintBackground(picture.radiance, surface, view_.camera, sceneBounds(scene_.scene()),
                         environment_.image, 0);
         return picture;
@@ -124,7 +111,7 @@ class FigureSheet {
             row.differenceFile = fmt::format("{}-{}-difference.png", name_, picture);
             difference = {
                 fmt::format("4 x difference to {}, RMSE {:.2f} %", againstName, 100 * row.relativeRmse),
-                toDisplay(differenceOf(image, *against), exposureStops_)};
+                toDisplay(scaledDifference(image.radiance, against->radiance, surface_), exposureStops_)};
             write(row.differenceFile, difference.image);
         }
         cells_[0].push_back({label, shown});
@@ -134,21 +121,7 @@ class FigureSheet {
     void writeSheet(const std::string& title) const { write(name_ + ".png", composeSheet(title, cells_)); }
 
   private:
-    FloatImage differenceOf(const Picture& image, const Picture& against) const {
-        FloatImage difference = image.radiance;
-        for (size_t p = 0; p < surface_.pixels(); ++p)
-            for (size_t c = 3 * p; c < 3 * p + 3; ++c)
-                difference.pixels[c] =
-                    surface_.triangle[p] == kNoTriangle
-                        ? 0.0f
-                        : kDifferenceScale * std::abs(std::max(image.radiance.pixels[c], 0.0f) -
-                                                      std::max(against.radiance.pixels[c], 0.0f));
-        return difference;
-    }
-    void write(const std::string& file, const ByteImage& image) const {
-        const std::vector<uint8_t> png = encodePng(image);
-        writeFileAtomically((folder_ / file).string(), std::as_bytes(std::span(png)));
-    }
+    void write(const std::string& file, const ByteImage& image) const { writePng(folder_ / file, image); }
 
     std::string name_;
     const SurfaceImage& surface_;

@@ -44,7 +44,7 @@ void drawText(ByteImage& image, int left, int top, int width, std::string text) 
 }  // namespace
 
 ByteImage composeSheet(const std::string& title, const std::vector<std::vector<SheetCell>>& rows) {
-    int width = 0, height = 0;
+    int width = 0, height = 0, noteHeight = 0;
     size_t columns = 0;
     for (const auto& row : rows) {
         columns = std::max(columns, row.size());
@@ -52,11 +52,12 @@ ByteImage composeSheet(const std::string& title, const std::vector<std::vector<S
             PRT_CHECK(cell.image.pixels.empty() || cell.image.channels == 3);
             width = std::max(width, cell.image.width);
             height = std::max(height, cell.image.height);
+            if (!cell.note.empty()) noteHeight = kLabel;
         }
     }
     PRT_CHECK_LT(0, width);
     ByteImage sheet{int(columns) * (width + kMargin) + kMargin,
-                    kLabel + int(rows.size()) * (height + kLabel + kMargin) + kMargin,
+                    kLabel + int(rows.size()) * (height + kLabel + noteHeight + kMargin) + kMargin,
                     3,
                     {}};
     sheet.pixels.resize(size_t(sheet.width) * size_t(sheet.height) * 3);
@@ -66,8 +67,9 @@ ByteImage composeSheet(const std::string& title, const std::vector<std::vector<S
         for (size_t c = 0; c < rows[r].size(); ++c) {
             const SheetCell& cell = rows[r][c];
             const int x = kMargin + int(c) * (width + kMargin);
-            const int y = kLabel + kMargin + int(r) * (height + kLabel + kMargin);
+            const int y = kLabel + kMargin + int(r) * (height + kLabel + noteHeight + kMargin);
             drawText(sheet, x, y, width, cell.label);
+            drawText(sheet, x, y + kLabel + height, width, cell.note);
             for (int line = 0; line < cell.image.height; ++line)
                 std::copy_n(cell.image.pixels.begin() + ptrdiff_t(line) * cell.image.width * 3,
                             3 * cell.image.width,

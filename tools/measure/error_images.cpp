@@ -2,14 +2,14 @@
 #include "tools/measure/error_images.h"
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 
-#include "precompute/base/atomic_file.h"
 #include "precompute/base/check.h"
 #include "precompute/base/error.h"
 #include "precompute/io/exr_file.h"
 #include "precompute/mesh/texel_raster.h"
+#include "tools/measure/output.h"
+#include "tools/measure/picture.h"
 
 namespace prt::tools {
 namespace {
@@ -57,8 +57,8 @@ double highEnd(std::vector<float> values) {
     return std::max(1e-6, double(values[place]));
 }
 
-void writePng(const std::filesystem::path& path, const std::vector<float>& texels, const PointGrid& grid,
-              double low, double high) {
+void writeHeatMap(const std::filesystem::path& path, const std::vector<float>& texels, const PointGrid& grid,
+                  double low, double high) {
     ByteImage image{grid.width, grid.height, 3, {}};
     image.pixels.reserve(3 * texels.size());
     for (const float value : texels) {
@@ -67,14 +67,7 @@ void writePng(const std::filesystem::path& path, const std::vector<float>& texel
             colour = rampColour(value > 0 ? std::log(double(value) / low) / std::log(high / low) : 0);
         image.pixels.insert(image.pixels.end(), colour.begin(), colour.end());
     }
-    const std::vector<uint8_t> bytes = encodePng(image);
-    writeFileAtomically(path, std::as_bytes(std::span(bytes)));
-}
-
-std::string fileStem(std::string name) {
-    for (char& c : name)
-        if (!std::isalnum(static_cast<unsigned char>(c)) && c != '_' && c != '-') c = '_';
-    return name;
+    writePng(path, image);
 }
 
 }  // namespace
@@ -124,7 +117,7 @@ std::vector<ErrorImage> writeErrorImages(const std::filesystem::path& directory,
         const size_t row = size_t(grid.width) * 4;
         for (auto& [stage, texels] : channels) {
             const std::filesystem::path file = directory / (stem + "." + stage + ".png");
-            writePng(file, texels, grid, low, high);
+            writeHeatMap(file, texels, grid, low, high);
             images.push_back({file.string(), raw, name, stage, low, high});
             for (float& value : texels)
                 if (std::isnan(value)) value = 0;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <set>
 #include <sstream>
@@ -64,6 +65,12 @@ void writeMeasurement(const Measurement& measurement, const MeasureOptions& opti
     if (common.json == "-") return;
     fmt::print("{}", measurement.summary.empty() ? measurement.rows.text() : measurement.summary);
     fmt::print("\nwritten: {}\n", fmt::join(written, " "));
+}
+
+std::string fileStem(std::string name) {
+    for (char& c : name)
+        if (!std::isalnum(static_cast<unsigned char>(c)) && c != '_' && c != '-') c = '_';
+    return name;
 }
 
 std::vector<int> parseIntegerList(const std::string& option, const std::string& text, int low, int high) {

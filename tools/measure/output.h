@@ -37,6 +37,9 @@ struct Measurement {
 void writeMeasurement(const Measurement& measurement, const MeasureOptions& options,
                       const CommonOptions& common, Report report);
 
+/// A name as part of a file name: what is no letter, digit, '_' or '-' becomes '_'.
+std::string fileStem(std::string name);
+
 /// Parses "3,6" or "3-6,8": rising, each once.
 /// @throws UsageError  naming `option`
 std::vector<int> parseIntegerList(const std::string& option, const std::string& text, int low, int high);
