@@ -216,10 +216,7 @@ void Renderer::State::drawPoints(const Camera& camera, const RenderOptions& opti
 TechniqueData& Renderer::State::dataOf(Technique technique) {
     const auto found = techniques.find(technique);
     if (found != techniques.end()) return found->second;
-    const bool visibility = readsVisibility(technique);
-    throw InputError(techniqueName(technique),
-                     visibility ? "there is no visibility" : "there are no PCA weights",
-                     visibility ? "run prt precompute" : "run prt compress");
+    throw missingData(technique);
 }
 
 const TechniqueData& Renderer::State::ready(Technique technique) {
@@ -250,7 +247,9 @@ template <class Map>
 void Renderer::State::add(Technique technique, const Map& map, int number, int has) {
     const GlStateGuard guard(context);
     checkGrid(map.grid, geometry.vertexCount(), hasAtlas,
-              readsVisibility(technique) ? "visibility" : "PCA weights");
+              readsVisibility(technique) ? "visibility"
+              : readsWeights(technique)  ? "PCA weights"
+                                         : "lightmap");
     if (number > 0 && number != has)
         throw InputError(techniqueName(technique), fmt::format("was given {} in place of {}", has, number),
                          "reduce it to them");
@@ -266,8 +265,20 @@ void Renderer::add(Technique technique, const VisibilityMap& visibility) {
 }
 
 void Renderer::add(Technique technique, const PcaMap& pca) {
-    PRT_CHECK(!readsVisibility(technique));
+    PRT_CHECK(readsWeights(technique));
     state_->add(technique, pca, technique.number, pca.components);
+}
+
+void Renderer::add(Technique technique, const Lightmap& lightmap) {
+    PRT_CHECK(technique.kind == TechniqueKind::ShLightmap);
+    const auto found = state_->techniques.find(technique);
+    if (found == state_->techniques.end()) {
+        state_->add(technique, lightmap, 0, 0);
+        return;
+    }
+    const GlStateGuard guard(state_->context);
+    checkGrid(lightmap.grid, state_->geometry.vertexCount(), state_->hasAtlas, "lightmap");
+    found->second.setLightmap(lightmap);
 }
 
 void Renderer::setTable(const NormalTable& table) {
@@ -295,6 +306,9 @@ void Renderer::setLight(Technique technique, const LiveLight& light, const std::
         data.setTable(light.tripleProductTable(weights, rotationRad, data.basis()));
     else if (technique.kind == TechniqueKind::PreconvolvedAo)
         data.setTable(light.preconvolvedTable(weights, rotationRad));
+    else if (technique.kind == TechniqueKind::ShLightmap)
+        throw InputError(techniqueName(technique), "its light is in its data",
+                         "add the lightmap of another light");
     else
         data.setLight(light.blend(weights, rotationRad), light.cosineBands());
 }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "precompute/io/image.h"
+#include "precompute/io/lightmap_file.h"
 #include "precompute/io/scene.h"
 #include "precompute/io/surface_image.h"
 #include "precompute/io/table_file.h"
@@ -66,6 +67,9 @@ class Renderer {
     /// vectors, texture limits exceeded
     void add(Technique technique, const VisibilityMap& visibility);
     void add(Technique technique, const PcaMap& pca);
+    /// ShLightmap, whose light is in its data: it needs no setLight(), is not turned by it, and suns are not
+    /// added to it.
+    void add(Technique technique, const Lightmap& lightmap);
 
     /// Uploads the table of Unc or Pca (already blended and rotated); replaces the previous one.
     /// @throws InputError  kind, order or layer count does not fit the visibility or PCA data
@@ -74,7 +78,7 @@ class Renderer {
     void setTable(Technique technique, const NormalTable& table);
     /// Light of any technique that was added: its table, or what it has in place of one.
     /// @param light  of the bands of the visibility that maps were made from, or more
-    /// @throws InputError  the technique was not added; more uniforms than OpenGL takes
+    /// @throws InputError  the technique was not added, or is ShLightmap; more uniforms than OpenGL takes
     void setLight(Technique technique, const LiveLight& light, const std::vector<double>& weights,
                   double rotationRad);
     /// How often the technique was given a table or light: the same number, the same light.

@@ -1,4 +1,5 @@
-// Sources: [IwanickiSloan2012, Sec. 3] unc, [Sec. 4] pca and pca-uniform, [Sec. 5] sh2 and preconvolved-ao.
+// Sources: [IwanickiSloan2012, Sec. 3] unc, [Sec. 4] pca and pca-uniform, [Sec. 5] sh-lightmap, sh2 and
+// preconvolved-ao.
 #include "runtime/technique.h"
 
 #include <fmt/format.h>
@@ -7,7 +8,7 @@
 #include <charconv>
 
 #include "precompute/base/check.h"
-#include "precompute/base/error.h"
+#include "precompute/io/lightmap_file.h"
 #include "precompute/math/sh.h"
 
 namespace prt {
@@ -25,6 +26,8 @@ constexpr Entry kEntries[] = {
      "weights of vectors x tables of their relit colours"},
     {TechniqueKind::PcaUniform, "pca-uniform", 0,
      "weights x products of vectors and light, convolved with the cosine at every pixel"},
+    {TechniqueKind::ShLightmap, "sh-lightmap", 0,
+     "lightmap of prt lightmap, with its bounces, for its light alone"},
     {TechniqueKind::Sh2, "sh2", 0, "two bands of visibility x two of light, multiplied at every pixel"},
     {TechniqueKind::PreconvolvedAo, "preconvolved-ao", 0, "unoccluded irradiance x ambient occlusion"},
 };
@@ -46,6 +49,8 @@ int valuesOf(Technique technique, const TechniqueSource& source) {
             return technique.number > 0 ? technique.number : source.components;
         case TechniqueKind::PcaUniform:
             return source.components;
+        case TechniqueKind::ShLightmap:
+            return 3 * kLightmapCoefficients;
         case TechniqueKind::Sh2:
             return 4;
         case TechniqueKind::PreconvolvedAo:
@@ -90,7 +95,8 @@ const std::vector<Technique>& listedTechniques() {
         for (const int bands : {3, 4, 6}) listed.push_back({TechniqueKind::Unc, bands});
         listed.push_back(Technique::Pca);
         for (int vectors = 4; vectors <= 24; vectors += 4) listed.push_back({TechniqueKind::Pca, vectors});
-        for (const Technique technique : {Technique::PcaUniform, Technique::Sh2, Technique::PreconvolvedAo})
+        for (const Technique technique :
+             {Technique::PcaUniform, Technique::ShLightmap, Technique::Sh2, Technique::PreconvolvedAo})
             listed.push_back(technique);
         return listed;
     }();
@@ -105,15 +111,27 @@ std::string listedTechniqueNames() {
 }
 
 bool readsVisibility(Technique technique) {
-    return technique.kind != TechniqueKind::Pca && technique.kind != TechniqueKind::PcaUniform;
+    return technique.kind == TechniqueKind::Unc || technique.kind == TechniqueKind::Sh2 ||
+           technique.kind == TechniqueKind::PreconvolvedAo;
+}
+
+bool readsWeights(Technique technique) {
+    return technique.kind == TechniqueKind::Pca || technique.kind == TechniqueKind::PcaUniform;
+}
+
+InputError missingData(Technique technique) {
+    const std::string name = techniqueName(technique);
+    if (readsVisibility(technique)) return {name, "there is no visibility", "run prt precompute"};
+    if (readsWeights(technique)) return {name, "there are no PCA weights", "run prt compress"};
+    return {name, "there is no lightmap of this light", "run prt lightmap"};
 }
 
 void checkTechnique(Technique technique, const TechniqueSource& source) {
     const std::string name = techniqueName(technique);
-    if (readsVisibility(technique) && source.shOrder == 0)
-        throw InputError(name, "there is no visibility", "run prt precompute");
-    if (!readsVisibility(technique) && source.components == 0)
-        throw InputError(name, "there are no PCA weights", "run prt compress");
+    if (readsVisibility(technique) ? source.shOrder == 0
+        : readsWeights(technique)  ? source.components == 0
+                                   : !source.lightmaps)
+        throw missingData(technique);
     if (technique.kind == TechniqueKind::Unc && technique.number > source.shOrder)
         throw InputError(name, fmt::format("visibility has {} bands only", source.shOrder),
                          fmt::format("bake with prt precompute --order {}", technique.number));
@@ -149,6 +167,9 @@ TechniqueCost techniqueCost(Technique technique, const TechniqueSource& source, 
             cost = {layers, functions * (12 * layers + 6), functions * (values + 1)};
             break;
         }
+        case TechniqueKind::ShLightmap:
+            cost = {layers, 45, 0};
+            break;
         case TechniqueKind::Sh2:
             cost = {1, 45, 4};
             break;

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
@@ -30,10 +31,26 @@ double functionScale(int l, int m) {
     return m % 2 ? -scale : scale;
 }
 
+// Seven texels of four: coefficients 1 … 4 and 5 … 8 of each colour, then coefficient 0 of all three.
+constexpr int kPackedLightmap = 28;
+std::vector<float> packLightmap(const Lightmap& map) {
+    PRT_CHECK_EQ(map.coefficients.size(), map.grid.count * 3 * kLightmapCoefficients);
+    std::vector<float> packed(map.grid.count * kPackedLightmap, 0.0f);
+    for (size_t point = 0; point < map.grid.count; ++point)
+        for (size_t colour = 0; colour < 3; ++colour) {
+            const float* from = &map.coefficients[(point * 3 + colour) * kLightmapCoefficients];
+            float* to = &packed[point * kPackedLightmap];
+            to[24 + colour] = from[0];
+            std::copy_n(from + 1, 8, to + 8 * colour);
+        }
+    return packed;
+}
+
 }  // namespace
 
 bool usesTable(Technique technique) {
-    return technique.kind != TechniqueKind::PcaUniform && technique.kind != TechniqueKind::Sh2;
+    return technique.kind == TechniqueKind::Unc || technique.kind == TechniqueKind::Pca ||
+           technique.kind == TechniqueKind::PreconvolvedAo;
 }
 
 TableKind tableKindOf(Technique technique) {
@@ -87,7 +104,7 @@ TechniqueData::TechniqueData(const GlContext& context, Technique technique, cons
 
 TechniqueData::TechniqueData(const GlContext& context, Technique technique, const PcaMap& pca)
     : context_(context), technique_(technique), shOrder_(pca.shOrder) {
-    PRT_CHECK(!readsVisibility(technique));
+    PRT_CHECK(readsWeights(technique));
     upload(pca.grid, pca.components, pca.weights, "PCA weights");
     basis_.shOrder = pca.shOrder;
     basis_.components = pca.components;
@@ -96,16 +113,32 @@ TechniqueData::TechniqueData(const GlContext& context, Technique technique, cons
     defines_ += technique.kind == TechniqueKind::Pca ? "#define WITH_MEAN\n" : "#define UNIFORM_PRODUCTS\n";
 }
 
+TechniqueData::TechniqueData(const GlContext& context, Technique technique, const Lightmap& lightmap)
+    : context_(context), technique_(technique), shOrder_(kLightmapShOrder) {
+    PRT_CHECK(technique.kind == TechniqueKind::ShLightmap);
+    defines_ += "#define LIGHTMAP\n";
+    setLightmap(lightmap);
+}
+
+void TechniqueData::setLightmap(const Lightmap& lightmap) {
+    PRT_CHECK(technique_.kind == TechniqueKind::ShLightmap);
+    const std::vector<float> packed = packLightmap(lightmap);
+    upload(lightmap.grid, kPackedLightmap, packed, "lightmap");
+    chooseProgram("");
+    ++lightRevision_;
+}
+
 void TechniqueData::upload(const PointGrid& grid, int perPoint, std::span<const float> values,
                            const char* where) {
     coefficients_ = uploadCoefficients(context_, grid, perPoint, values, where);
     perPoint_ = perPoint;
-    if (grid.domain == PointDomain::Vertex) defines_ += "#define PER_VERTEX\n";
+    perVertex_ = grid.domain == PointDomain::Vertex;
 }
 
-void TechniqueData::chooseProgram(const std::string& defines) {
+void TechniqueData::chooseProgram(const std::string& further) {
+    const std::string defines = defines_ + (perVertex_ ? "#define PER_VERTEX\n" : "") + further;
     if (!programs_.contains(defines))
-        programs_.emplace(defines, GlProgram(context_.gl(), "screen.vert", "light.frag", defines_ + defines));
+        programs_.emplace(defines, GlProgram(context_.gl(), "screen.vert", "light.frag", defines));
     program_ = &programs_.at(defines);
 }
 

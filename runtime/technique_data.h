@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "precompute/io/lightmap_file.h"
 #include "precompute/io/table_file.h"
 #include "precompute/io/visibility_file.h"
 #include "precompute/math/environment.h"
@@ -27,6 +28,13 @@ class TechniqueData {
     /// @throws InputError  larger than OpenGL takes
     TechniqueData(const GlContext& context, Technique technique, const PcaMap& pca);
 
+    /// For ShLightmap, whose light is in its data.
+    /// @throws InputError  larger than OpenGL takes
+    TechniqueData(const GlContext& context, Technique technique, const Lightmap& lightmap);
+
+    /// Another lightmap in place of the one before.
+    /// @throws InputError  larger than OpenGL takes
+    void setLightmap(const Lightmap& lightmap);
     /// Light of a technique that looks it up by the normal.
     /// @throws InputError  kind, order or number of layers is not what the coefficients need
     void setTable(const NormalTable& table);
@@ -37,7 +45,7 @@ class TechniqueData {
 
     /// @throws InputError  no light was set
     void checkLight() const;
-    /// Tables or uniforms that were set so far.
+    /// Tables, uniforms or lightmaps that were set so far.
     uint64_t lightRevision() const { return lightRevision_; }
     int shOrder() const { return shOrder_; }
     /// Vectors that weights belong to, without the weights; empty for techniques that read visibility.
@@ -48,7 +56,7 @@ class TechniqueData {
 
   private:
     void upload(const PointGrid& grid, int perPoint, std::span<const float> values, const char* where);
-    void chooseProgram(const std::string& defines);
+    void chooseProgram(const std::string& further);
     void setProducts(const EnvironmentSh& light, int cosineBands);
     void setTwoBands(const EnvironmentSh& light);
 
@@ -57,14 +65,15 @@ class TechniqueData {
     CoefficientImage coefficients_;
     TableImage table_;
     int shOrder_ = 0, perPoint_ = 0;
-    PcaMap basis_;  // without weights
-    std::string defines_;
-    std::map<std::string, GlProgram> programs_;  // by further defines
+    PcaMap basis_;         // without weights
+    std::string defines_;  // of the technique
+    bool perVertex_ = false;
+    std::map<std::string, GlProgram> programs_;  // by their defines
     const GlProgram* program_ = nullptr;         // that of the light
     uint64_t lightRevision_ = 0;
 };
 
-/// Whether the technique looks light up by the normal; else its light is uniforms.
+/// Whether the technique looks light up by the normal; else its light is uniforms, or a lightmap.
 bool usesTable(Technique technique);
 /// Kind of that table.
 TableKind tableKindOf(Technique technique);

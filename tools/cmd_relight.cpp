@@ -95,7 +95,12 @@ class Relight {
             .set("rotate_deg", arguments_.rotateDeg)
             .set("context", glContextKindName(context_.kind()))
             .set("renderer", context_.rendererName());
-        if (reference) report.set("reference_directions", uint64_t(directions_.direction.size()));
+        if (reference)
+            report.set("reference_directions", uint64_t(directions_.direction.size()))
+                .set("bounces", arguments_.bounces);
+        if (!noise_.empty())
+            report.set("reference_paths", arguments_.referencePaths)
+                .set("reference_noise", *std::ranges::max_element(noise_));
         if (!arguments_.each) {
             light(data_.weights, "blend", report);
         } else {
@@ -121,14 +126,26 @@ class Relight {
         const std::vector<double> rotations(data_.environments.size(), arguments_.rotationRad());
         directions_ = makeReferenceDirections(data_.environments, rotations, arguments_.referenceRays);
         if (!arguments_.compareReference) {
-            truth_ = traceReference(caster, surface_, directions_);
+            traceTruth(caster, {});
             return;
         }
         const Projection& projection =
             data_.visibility ? data_.visibility->projection : data_.pca->projection;
         TruncationFloor floor(surface_, directions_, data_.shOrder, projection);
-        truth_ = traceReference(caster, surface_, directions_, floor.visitor());
+        traceTruth(caster, floor.visitor());
         floor_ = floor.irradiance();
+    }
+
+    void traceTruth(const RayCaster& caster, const ReferenceVisitor& visitor) {
+        if (arguments_.bounces == 0) {
+            truth_ = traceReference(caster, surface_, directions_, visitor);
+            return;
+        }
+        BounceResult result =
+            traceReferenceBounces(caster, surface_, directions_, SurfaceAlbedo(data_.scene),
+                                  {arguments_.bounces, arguments_.referencePaths, 1}, visitor);
+        truth_ = std::move(result.irradiance);
+        noise_ = std::move(result.relativeError);
     }
 
     /// Σ_e weight_e · images[e]
@@ -189,11 +206,16 @@ class Relight {
             writeImages(frame.radiance, referenceImage, environment, name);
         }
         if (!arguments_.compareReference) return;
+        const int bounces = techniques_.bounces(technique);
+        if (bounces != arguments_.bounces && bounces > 0)
+            logWarning(fmt::format("{} holds {} bounces, the reference {}; compare with --bounces {}", name,
+                                   bounces, arguments_.bounces, bounces));
         const IrradianceError error = compareIrradiance(frame.irradiance.pixels, truth, surface_);
         const TechniqueCost cost =
             techniqueCost(technique, data_.source(), data_.domain(), arguments_.tables.cosineBands());
         Report row;
         row.set("technique", name)
+            .set("bounces", bounces)
             .set("relative_rmse", error.relativeRmse)
             .set("psnr_db", error.psnrDb)
             .set("fetches", cost.fetches)
@@ -257,6 +279,7 @@ class Relight {
     size_t covered_ = 0;
     ReferenceDirections directions_;
     std::vector<std::vector<float>> truth_, floor_;
+    std::vector<double> noise_;  // [environments] of light that bounced; empty without
 };
 
 }  // namespace

@@ -88,6 +88,10 @@ void RelightArguments::addTo(CommandLine& line) {
               "treat every environment by itself instead of blending; {env} in file names becomes its name");
     line.integer("--reference-rays", referenceRays, 64, 1 << 20,
                  "directions of the reference, before refinement");
+    line.integer("--bounces", bounces, 0, 8,
+                 "diffuse reflections in the reference; techniques but sh-lightmap have none");
+    line.integer("--reference-paths", referencePaths, 2, 1 << 16,
+                 "of light that bounces, per pixel of the reference; an even number");
     line.text("--reference-output", referenceOutput, "FILE",
               "with --compare-reference: the ray-traced image");
     line.text("--difference-output", differenceOutput, "FILE",
@@ -142,6 +146,11 @@ void RelightArguments::finish() {
         throw UsageError("--output", "nothing to do", "name an image with -o, or give --compare-reference");
     if (!compareReference && !(referenceOutput.empty() && differenceOutput.empty()))
         throw UsageError("--reference-output", "needs --compare-reference");
+    if (bounces > 0 && !compareReference && !reference)
+        throw UsageError("--bounces", "is of the reference, which was not asked for",
+                         "give --compare-reference or --technique reference");
+    if (referencePaths % 2 != 0)
+        throw UsageError("--reference-paths", fmt::format("{} is not even", referencePaths));
     if (each && environments.size() > 1)
         for (const std::string& file : {output, referenceOutput, differenceOutput})
             if (!file.empty() && file.find("{env}") == std::string::npos)

@@ -36,7 +36,7 @@ struct RelightArguments {
     std::string exposureText = "0";
     std::string eyeText, targetText;
     double rotateDeg = 0, fovDeg = 40, azimuthDeg = 35, elevationDeg = 18, distance = 1;
-    int referenceRays = 4096, timeFrames = 0;
+    int referenceRays = 4096, bounces = 0, referencePaths = 256, timeFrames = 0;
     bool noNormalMap = false, noBackground = false, compareReference = false, each = false;
 
     std::vector<Technique> techniques;  ///< asked for by their own names

@@ -36,10 +36,23 @@ std::vector<Technique> inListedOrder(const std::vector<Technique>& wanted) {
     return ordered;
 }
 
+// Whoever names the technique is told what is missing; "all" has it where it is there.
+void findLightmaps(const RelightArguments& arguments, bool named, RelightData& data) {
+    data.lightmaps = std::make_shared<RelightLightmaps>(data.bundle, arguments, data.environments);
+    if (!named && !arguments.allTechniques) return;
+    try {
+        data.lightmaps->check(data.weights, arguments.rotationRad());
+        data.hasLightmaps = true;
+    } catch (const InputError&) {
+        if (named) throw;
+    }
+}
+
 }  // namespace
 
 TechniqueSource RelightData::source() const {
-    return {visibility ? visibility->shOrder : 0, pca ? pca->shOrder : 0, pca ? pca->components : 0};
+    return {visibility ? visibility->shOrder : 0, pca ? pca->shOrder : 0, pca ? pca->components : 0,
+            hasLightmaps};
 }
 
 PointDomain RelightData::domain() const {
@@ -47,11 +60,15 @@ PointDomain RelightData::domain() const {
 }
 
 RelightData loadRelightData(const RelightArguments& arguments) {
-    RelightData data{Bundle::open(arguments.bundlePath), {}, {}, {}, {}, {}, 0, {}};
+    RelightData data{Bundle::open(arguments.bundlePath), {}, {}, {}, {}, false, {}, {}, 0, {}};
     const std::string precompute = fmt::format("prt precompute MESH -o {}", arguments.bundlePath);
     data.bundle.require("mesh.glb", precompute);
     data.scene = readGltf(data.bundle.pathOf("mesh.glb").string());
 
+    for (const EnvironmentArgument& argument : arguments.environments) {
+        data.environments.push_back(loadEnvironment(argument.source, arguments.environmentOptions));
+        data.weights.push_back(argument.weight);
+    }
     const bool hasPca = data.bundle.find("pca.exr") != nullptr;
     const bool pcaIsCurrent = hasPca && data.bundle.staleReason("pca.exr", false).empty();
     std::vector<Technique> wanted = wantedTechniques(arguments, pcaIsCurrent);
@@ -63,7 +80,7 @@ RelightData loadRelightData(const RelightArguments& arguments) {
         data.shOrder = data.visibility->shOrder;
     }
     // A comparison measures what is there; asking for pca itself insists on it.
-    if (std::ranges::any_of(wanted, [](Technique t) { return !readsVisibility(t); })) {
+    if (std::ranges::any_of(wanted, readsWeights)) {
         data.bundle.require("pca.exr", fmt::format("prt compress {}", arguments.bundlePath));
         data.pca = readPcaFile(data.bundle.pathOf("pca.exr").string());
         data.shOrder = data.pca->shOrder;
@@ -71,16 +88,12 @@ RelightData loadRelightData(const RelightArguments& arguments) {
         logWarning("pca.exr is stale and is not compared; renew it with: prt compress " +
                    arguments.bundlePath);
     }
+    findLightmaps(arguments, std::ranges::find(wanted, Technique::ShLightmap) != wanted.end(), data);
     if (all)
         for (const Technique technique : listedTechniques())
             if (canDraw(technique, data.source())) wanted.push_back(technique);
     for (const Technique technique : wanted) checkTechnique(technique, data.source());
     data.techniques = inListedOrder(wanted);
-
-    for (const EnvironmentArgument& argument : arguments.environments) {
-        data.environments.push_back(loadEnvironment(argument.source, arguments.environmentOptions));
-        data.weights.push_back(argument.weight);
-    }
     return data;
 }
 
@@ -98,6 +111,8 @@ void RelightTechniques::addTo(Renderer& renderer) {
     std::erase_if(given_, [&](const auto& entry) { return entry.first.first == &renderer; });
     for (const Technique named : data_.techniques) {
         const Technique technique = drawn(named);
+        // A lightmap comes with its light.
+        if (technique.kind == TechniqueKind::ShLightmap) continue;
         if (readsVisibility(technique)) {
             const int bands = technique.kind == TechniqueKind::Sh2 ? 2 : technique.number;
             if (bands > 0)
@@ -132,6 +147,12 @@ const char* RelightTechniques::makeLight(Renderer& renderer, Technique used,
             renderer.setTable(used, *table);
             return "bundle";
         }
+    }
+    if (used.kind == TechniqueKind::ShLightmap) {
+        const Lightmap lightmap = data_.lightmaps->blend(weights, rotationRad);
+        bounces_ = lightmap.bounces;
+        renderer.add(used, lightmap);
+        return "bundle";
     }
     if (!live_) live_.emplace(data_.environments, data_.shOrder, arguments_.tables);
     renderer.setLight(used, *live_, weights, rotationRad);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -16,6 +17,7 @@
 #include "runtime/renderer.h"
 #include "runtime/technique.h"
 #include "tools/relight_arguments.h"
+#include "tools/relight_lightmaps.h"
 
 namespace prt::tools {
 
@@ -25,6 +27,8 @@ struct RelightData {
     Scene scene;
     std::optional<VisibilityMap> visibility;
     std::optional<PcaMap> pca;
+    std::shared_ptr<RelightLightmaps> lightmaps;  ///< of the environments, read when asked for
+    bool hasLightmaps = false;                    ///< all that the arguments' light takes; where asked for
     std::vector<Environment> environments;
     std::vector<double> weights;
     int shOrder = 0;                    ///< of visibility, or of the vectors
@@ -52,9 +56,12 @@ class RelightTechniques {
     /// every frame. The renderer's light must be set in no other way meanwhile.
     /// @param weights      [environments]
     /// @param rotationRad  turn of the environments about the up axis
-    /// @return "bundle" or "built": where its tables came from
+    /// @return "bundle" or "built": where its tables came from; a lightmap is the bundle's
+    /// @throws InputError  ShLightmap without a lightmap of this light
     const char* setLight(Renderer& renderer, Technique technique, const std::vector<double>& weights,
                          double rotationRad);
+    /// Diffuse reflections that the technique's light holds, after setLight().
+    int bounces(Technique technique) const { return technique == Technique::ShLightmap ? bounces_ : 0; }
     /// The name under which the renderer has a technique: asking for all bands or vectors by their number is
     /// asking for all.
     Technique drawn(Technique technique) const;
@@ -74,6 +81,7 @@ class RelightTechniques {
     const RelightArguments& arguments_;
     const RelightData& data_;
     std::optional<LiveLight> live_;
+    int bounces_ = 0;                                                            // of the lightmap
     std::map<std::pair<TableKind, size_t>, std::optional<NormalTable>> stored_;  // as far as asked for
     std::map<std::pair<const Renderer*, Technique>, Given> given_;               // last
 };

@@ -3,6 +3,7 @@
 //   PRECONVOLVED       E_c = k T_c(n), k ambient occlusion, T unoccluded irradiance
 //   UNIFORM_PRODUCTS   E_c = Σ_j f_j(n) (P_jc,mean + Σ_i k_i P_jci), f functions of the clamped cosine
 //   TWO_BANDS          E_c = ∫ V L_c max(0, n·ω) dω, V and L of two bands
+//   LIGHTMAP           E_c = Σ_i k_ci A_i Y_i(n), k radiance of three bands that arrives at the point
 //   BASE_PASS          E_c = 1: what a frame costs without its light
 //   POINT_COLOURS      no light: the first three values of the point as they are
 // [IwanickiSloan2012, Sec. 3 to 5]
@@ -93,8 +94,10 @@ vec4 valuesAt(sampler2DArray image, Points point, int layer) { return textureLod
 /// Each sun: what it sends to a surface of this normal, times the share of its disc that the point sees.
 vec3 sunlight(Points points, vec3 normal) {
     vec3 sum = vec3(0.0);
+#ifndef LIGHTMAP  // which has them already
     for (int i = 0; i < sunCount; ++i)
         sum += sunIrradiance[i] * max(dot(normal, sunDirection[i]), 0.0) * valuesAt(sunShadows, points, i / 4)[i % 4];
+#endif
     return sum;
 }
 
@@ -147,6 +150,20 @@ vec3 irradianceAt(Points points, vec3 n) {
         }
         turned = vec2(turned.x * n.x - turned.y * n.y, turned.x * n.y + turned.y * n.x);
     }
+    return sum;
+}
+#elif defined(LIGHTMAP)
+/// Bands of the clamped cosine [RamamoorthiHanrahan2001, Eq. 19]. Layers 2c and 2c + 1 are coefficients 1 … 4 and
+/// 5 … 8 of colour c, layer 6 is coefficient 0 of all.
+vec3 irradianceAt(Points points, vec3 n) {
+    const float b0 = kPi * sqrt(1.0 / (4.0 * kPi)), b1 = 2.0 / 3.0 * kPi * sqrt(3.0 / (4.0 * kPi)),
+                b2 = 0.25 * kPi * sqrt(15.0 / (4.0 * kPi));
+    const vec4 first = vec4(-b1 * n.y, b1 * n.z, -b1 * n.x, b2 * n.x * n.y);
+    const vec4 second = vec4(-b2 * n.y * n.z, b2 / sqrt(12.0) * (3.0 * n.z * n.z - 1.0), -b2 * n.x * n.z,
+                             0.5 * b2 * (n.x * n.x - n.y * n.y));
+    vec3 sum = b0 * valuesAt(coefficients, points, 6).rgb;
+    for (int c = 0; c < 3; ++c)
+        sum[c] += dot(first, valuesAt(coefficients, points, 2 * c)) + dot(second, valuesAt(coefficients, points, 2 * c + 1));
     return sum;
 }
 #elif defined(BASE_PASS)

@@ -180,6 +180,38 @@ TEST_P(Techniques, PaperVariantHasThreeBandsOfTheCosine) {
         1e-5);
 }
 
+TEST_P(Techniques, LightmapIsWhatItsCoefficientsSay) {
+    Lightmap map;
+    map.grid = visibility_.grid;
+    const auto fill = [&](float seed) {
+        map.coefficients.clear();
+        for (size_t i = 0; i < map.grid.count * 27; ++i)
+            map.coefficients.push_back(std::sin(seed * float(i % 27)));
+    };
+    const auto irradiance = [&](const Vec3f& n, size_t c) {
+        std::vector<float> cosine(9);
+        evalClampedCosineSh(3, n, cosine);
+        double sum = 0;
+        for (size_t i = 0; i < 9; ++i) sum += double(map.coefficients[9 * c + i]) * double(cosine[i]);
+        return sum;
+    };
+    Renderer renderer(context_, scene_, nullptr, nullptr);
+    EXPECT_THROW(renderer.render(facing(), Technique::ShLightmap, kSmall), InputError);
+    fill(1.3f);
+    renderer.add(Technique::ShLightmap, map);
+    EXPECT_EQ(renderer.lightRevision(Technique::ShLightmap), 1u);
+    EXPECT_LT(worst(renderer, Technique::ShLightmap, irradiance), 1e-6);
+    // Another light; a sun, which is in the lightmap already, does not come twice.
+    fill(2.1f);
+    renderer.add(Technique::ShLightmap, map);
+    EXPECT_EQ(renderer.lightRevision(Technique::ShLightmap), 2u);
+    const SunLight sun{Vec3f::UnitY(), {5, 5, 5}, std::vector<float>(map.grid.count, 1.0f)};
+    renderer.setSuns(std::span(&sun, 1), map.grid);
+    EXPECT_LT(worst(renderer, Technique::ShLightmap, irradiance), 1e-6);
+    EXPECT_THROW(renderer.setLight(Technique::ShLightmap, LiveLight(environments_, kOrder, {}), {1.0}, 0),
+                 InputError);
+}
+
 INSTANTIATE_TEST_SUITE_P(Domains, Techniques, testing::Values(PointDomain::Texel, PointDomain::Vertex),
                          [](const auto& domain) { return std::string(pointDomainName(domain.param)); });
 
@@ -253,11 +285,14 @@ TEST(TechniqueNames, NeedsAndCosts) {
     EXPECT_FALSE(canDraw(Technique::PcaUniform, bare));
     EXPECT_TRUE(canDraw(Technique::Sh2, bare));
     EXPECT_FALSE(canDraw(Technique::Sh2, {1, 0, 0}));
+    EXPECT_FALSE(canDraw(Technique::ShLightmap, all));
+    EXPECT_TRUE(canDraw(Technique::ShLightmap, {6, 6, 16, true}));
     // The paper's 9 + 27 fetches.
     EXPECT_EQ(techniqueCost({TechniqueKind::Unc, 6}, all, PointDomain::Texel, 12).fetches, 36);
     EXPECT_EQ(techniqueCost(Technique::Pca, all, PointDomain::Texel, 12).fetches, 17);
     EXPECT_EQ(techniqueCost(Technique::Pca, all, PointDomain::Vertex, 12).fetches, 25);
     EXPECT_EQ(techniqueCost(Technique::PcaUniform, all, PointDomain::Texel, 12).uniforms, 69 * 17);
+    EXPECT_EQ(techniqueCost(Technique::ShLightmap, all, PointDomain::Texel, 12).fetches, 7);
     EXPECT_EQ(techniqueCost(Technique::Sh2, all, PointDomain::Texel, 12).fetches, 1);
     EXPECT_EQ(techniqueCost(Technique::PreconvolvedAo, all, PointDomain::Texel, 12).fetches, 2);
     EXPECT_EQ(cosineFunctionCount(3), 9);
