@@ -10,6 +10,7 @@ void runTabulateCommand(int argc, char** argv);
 void runLightmapCommand(int argc, char** argv);
 void runExportCommand(int argc, char** argv);
 void runRelightCommand(int argc, char** argv);
+void runViewCommand(int argc, char** argv);
 void runInfoCommand(int argc, char** argv);
 void runMeasureCommand(int argc, char** argv);
 

@@ -33,6 +33,8 @@ constexpr Command kCommands[] = {
      prt::tools::runExportCommand},
     {"relight", "draws a bundle under blended, rotated environments; compares with ray-traced truth",
      prt::tools::runRelightCommand},
+    {"view", "opens a window on a bundle: orbit, turn and blend light, compare (in builds with windows)",
+     prt::tools::runViewCommand},
     {"info", "explains a bundle: files, conventions, settings, what is stale", prt::tools::runInfoCommand},
     {"measure", "reproduces the papers' figures: parameterizations, bases, rotation, products",
      prt::tools::runMeasureCommand},

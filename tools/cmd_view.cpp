@@ -1,0 +1,108 @@
+// prt view: a window on a bundle, lit by any blend of environments.
+#include <fmt/format.h>
+
+#include <iostream>
+#include <iterator>
+
+#include "precompute/base/atomic_file.h"
+#include "precompute/base/error.h"
+#include "tools/command_line.h"
+#include "tools/commands.h"
+#include "tools/environment_arguments.h"
+#include "tools/table_arguments.h"
+#include "tools/view/app.h"
+#include "tools/view/bindings.h"
+
+namespace prt::tools {
+namespace {
+
+struct ViewArguments {
+    ViewOptions options;
+    std::string toneText = "none", script, folder = ".";
+
+    void addTo(CommandLine& line);
+    void finish();
+};
+
+void ViewArguments::addTo(CommandLine& line) {
+    RelightArguments& relight = options.relight;
+    line.positional("BUNDLE", relight.bundlePath, "bundle made by prt precompute");
+    line.textList("--env", relight.environmentTexts, "ENV[:WEIGHT]",
+                  "environment and its weight (1); any number; none: all built-in skies, the first alone");
+    addEnvironmentOptions(line, relight.environmentOptions);
+    line.real("--rotate", relight.rotateDeg, -1e6, 1e6,
+              "turn of the environments about the up axis, degrees");
+    line.text("--technique", options.technique, "NAME",
+              fmt::format("shown first [{}; none: pca, or unc without pca.exr]", listedTechniqueNames()));
+    line.text("--size", relight.sizeText, "WIDTHxHEIGHT", "of the window");
+    line.text("--exposure", relight.exposureText, "STOPS|auto", "brightness");
+    line.choice("--tone", toneText, {"none", "filmic", "neutral"}, "tone curve");
+    line.integer("--samples", options.samples, 1, 4, "a pixel: 1 or 4");
+    line.text("--eye", relight.eyeText, "X,Y,Z", "camera position; else it is placed by the next three");
+    line.text("--target", relight.targetText, "X,Y,Z", "point looked at; else the middle of the scene");
+    line.real("--azimuth", relight.azimuthDeg, -1e6, 1e6,
+              "of the camera around the scene, degrees from +Z towards +X");
+    line.real("--elevation", relight.elevationDeg, -89, 89, "of the camera above the horizon, degrees");
+    line.real("--distance", relight.distance, 0.01, 100,
+              "of the camera, 1 = the scene's bounding sphere fills the picture");
+    line.real("--fov", relight.fovDeg, 1, 160, "vertical field of view, degrees");
+    line.flag("--no-normal-map", relight.noNormalMap, "shade with the mesh's own normals");
+    line.flag("--no-background", relight.noBackground, "black where nothing is seen");
+    addTableOptions(line, "--table-", relight.tables);
+    addSunOption(line, relight.tables);
+    line.integer("--reference-rays", relight.referenceRays, 64, 1 << 20,
+                 "directions of the reference, before refinement");
+    line.text("--screenshots", folder, "FOLDER", "where key P writes prt-view-0001.png and so on");
+    line.flag("--fps", options.measureFrames, "draw all the time and show frames a second");
+    line.text("--script", script, "FILE|-", "play input from a file, or from standard input");
+}
+
+void ViewArguments::finish() {
+    RelightArguments& relight = options.relight;
+    if (relight.environmentTexts.empty()) {
+        relight.environmentTexts = builtInEnvironments();
+        options.firstAlone = true;
+    }
+    if (!options.technique.empty() && !techniqueFromName(options.technique))
+        throw UsageError("--technique", fmt::format("there is no technique called '{}'", options.technique),
+                         fmt::format("use one of {}", listedTechniqueNames()));
+    if (options.samples != 1 && options.samples != 4)
+        throw UsageError("--samples", fmt::format("{} is neither 1 nor 4", options.samples));
+    relight.techniqueNames = {"all"};
+    relight.timeFrames = 1;  // relight wants something to do
+    relight.finish();
+    options.toneCurve = toneCurveFromName(toneText).value();
+    options.screenshots = folder;
+    if (script.empty()) return;
+    options.scriptName = script == "-" ? "standard input" : script;
+    options.script = parseViewScript(
+        script == "-" ? std::string(std::istreambuf_iterator<char>(std::cin), {}) : readFile(script),
+        options.scriptName);
+}
+
+std::string epilogue() {
+    std::string text = "Mouse and keys:\n";
+    for (const HelpLine& line : helpLines()) text += fmt::format("  {:<30} {}\n", line.keys, line.help);
+    text += "Commands of a script, one a line:\n";
+    for (const ScriptCommandHelp& command : scriptHelp())
+        text += fmt::format("  {:<36} {}\n", command.usage, command.help);
+    return text + "Example:\n  prt view out/house.prt --env sunset.exr --env night.exr:0.3 --technique pca16";
+}
+
+}  // namespace
+
+void runViewCommand(int argc, char** argv) {
+    ViewArguments arguments;
+    CommandLine line("prt view", "Opens a window on a bundle: turn it, light it, compare it.", epilogue());
+    arguments.addTo(line);
+    if (!line.parse(argc, argv)) return;
+    arguments.finish();
+#ifdef PRT_WITH_VIEWER
+    runViewer(arguments.options).write(line.common().json);
+#else
+    throw InputError("prt view", "this build has no windows",
+                     "configure it with -DPRT_WITH_VIEWER=ON (packages: tools/install-dependencies viewer)");
+#endif
+}
+
+}  // namespace prt::tools
