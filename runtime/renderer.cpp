@@ -266,6 +266,7 @@ void Renderer::add(Technique technique, const VisibilityMap& visibility) {
 
 void Renderer::add(Technique technique, const PcaMap& pca) {
     PRT_CHECK(readsWeights(technique));
+    PRT_CHECK(technique.kind != TechniqueKind::VertexPca || pca.grid.domain == PointDomain::Vertex);
     state_->add(technique, pca, technique.number, pca.components);
 }
 
@@ -302,7 +303,7 @@ void Renderer::setLight(Technique technique, const LiveLight& light, const std::
     TechniqueData& data = s.dataOf(technique);
     if (technique.kind == TechniqueKind::Unc)
         data.setTable(light.lightCosineTable(weights, rotationRad, data.shOrder()));
-    else if (technique.kind == TechniqueKind::Pca)
+    else if (technique.kind == TechniqueKind::Pca || technique.kind == TechniqueKind::VertexPca)
         data.setTable(light.tripleProductTable(weights, rotationRad, data.basis()));
     else if (technique.kind == TechniqueKind::PreconvolvedAo)
         data.setTable(light.preconvolvedTable(weights, rotationRad));

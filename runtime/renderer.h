@@ -66,6 +66,7 @@ class Renderer {
     /// @throws InputError  per-vertex count differs from the mesh, no uv1 for per-texel data, other bands or
     /// vectors, texture limits exceeded
     void add(Technique technique, const VisibilityMap& visibility);
+    /// VertexPca takes a map per vertex (precompute/mesh/vertex_values.h makes one from texels).
     void add(Technique technique, const PcaMap& pca);
     /// ShLightmap, whose light is in its data: it needs no setLight(), is not turned by it, and suns are not
     /// added to it.

@@ -1,5 +1,5 @@
-// Sources: [IwanickiSloan2012, Sec. 3] unc, [Sec. 4] pca and pca-uniform, [Sec. 5] sh-lightmap, sh2 and
-// preconvolved-ao.
+// Sources: [IwanickiSloan2012, Sec. 3] unc, [Sec. 4] pca, vertex-pca and pca-uniform, [Sec. 5] sh-lightmap,
+// sh2 and preconvolved-ao.
 #include "runtime/technique.h"
 
 #include <fmt/format.h>
@@ -24,6 +24,7 @@ constexpr Entry kEntries[] = {
     {TechniqueKind::Unc, "unc", kMaxBundleShOrder, "coefficients of visibility x light-cosine table"},
     {TechniqueKind::Pca, "pca", shCount(kMaxBundleShOrder),
      "weights of vectors x tables of their relit colours"},
+    {TechniqueKind::VertexPca, "vertex-pca", shCount(kMaxBundleShOrder), "pca with weights at the vertices"},
     {TechniqueKind::PcaUniform, "pca-uniform", 0,
      "weights x products of vectors and light, convolved with the cosine at every pixel"},
     {TechniqueKind::ShLightmap, "sh-lightmap", 0,
@@ -46,6 +47,7 @@ int valuesOf(Technique technique, const TechniqueSource& source) {
         case TechniqueKind::Unc:
             return shCount(technique.number > 0 ? technique.number : source.shOrder);
         case TechniqueKind::Pca:
+        case TechniqueKind::VertexPca:
             return technique.number > 0 ? technique.number : source.components;
         case TechniqueKind::PcaUniform:
             return source.components;
@@ -95,8 +97,8 @@ const std::vector<Technique>& listedTechniques() {
         for (const int bands : {3, 4, 6}) listed.push_back({TechniqueKind::Unc, bands});
         listed.push_back(Technique::Pca);
         for (int vectors = 4; vectors <= 24; vectors += 4) listed.push_back({TechniqueKind::Pca, vectors});
-        for (const Technique technique :
-             {Technique::PcaUniform, Technique::ShLightmap, Technique::Sh2, Technique::PreconvolvedAo})
+        for (const Technique technique : {Technique::VertexPca, Technique::PcaUniform, Technique::ShLightmap,
+                                          Technique::Sh2, Technique::PreconvolvedAo})
             listed.push_back(technique);
         return listed;
     }();
@@ -116,7 +118,8 @@ bool readsVisibility(Technique technique) {
 }
 
 bool readsWeights(Technique technique) {
-    return technique.kind == TechniqueKind::Pca || technique.kind == TechniqueKind::PcaUniform;
+    return technique.kind == TechniqueKind::Pca || technique.kind == TechniqueKind::VertexPca ||
+           technique.kind == TechniqueKind::PcaUniform;
 }
 
 InputError missingData(Technique technique) {
@@ -135,7 +138,7 @@ void checkTechnique(Technique technique, const TechniqueSource& source) {
     if (technique.kind == TechniqueKind::Unc && technique.number > source.shOrder)
         throw InputError(name, fmt::format("visibility has {} bands only", source.shOrder),
                          fmt::format("bake with prt precompute --order {}", technique.number));
-    if (technique.kind == TechniqueKind::Pca && technique.number > source.components)
+    if (readsWeights(technique) && technique.number > source.components)
         throw InputError(name, fmt::format("there are {} vectors only", source.components),
                          fmt::format("run prt compress --components {}", technique.number));
     if (technique.kind == TechniqueKind::Sh2 && source.shOrder < 2)
@@ -160,6 +163,7 @@ TechniqueCost techniqueCost(Technique technique, const TechniqueSource& source, 
             cost = {4 * layers, 12 * layers, 0};
             break;
         case TechniqueKind::Pca:
+        case TechniqueKind::VertexPca:
             cost = {4 * layers + 1, 12 * layers, 0};
             break;
         case TechniqueKind::PcaUniform: {
@@ -177,7 +181,7 @@ TechniqueCost techniqueCost(Technique technique, const TechniqueSource& source, 
             cost = {2, 3, 0};
             break;
     }
-    if (domain == PointDomain::Vertex) {
+    if (domain == PointDomain::Vertex || technique.kind == TechniqueKind::VertexPca) {
         cost.fetches += 2 * layers;
         cost.multiplyAdds += 12 * layers;
     }

@@ -17,6 +17,7 @@ namespace prt {
 enum class TechniqueKind {
     Unc,            ///< coefficients of visibility · light × cosine table
     Pca,            ///< weights · light × cosine × vector tables
+    VertexPca,      ///< Pca with weights at the vertices, also where the bundle is per texel
     PcaUniform,     ///< weights · products of vectors and light, convolved with the cosine at every pixel
     ShLightmap,     ///< radiance that arrives at the point, with its bounces, baked for one light
     Sh2,            ///< visibility and light of two bands, multiplied and convolved at every pixel
@@ -26,21 +27,23 @@ enum class TechniqueKind {
 /// @source [IwanickiSloan2012, Sec. 3 to 5]
 struct Technique {
     TechniqueKind kind = TechniqueKind::Unc;
-    /// Unc: bands of visibility, 1..kMaxBundleShOrder; Pca: leading vectors, 1..n². 0: all that there are.
+    /// Unc: bands of visibility, 1..kMaxBundleShOrder; Pca and VertexPca: leading vectors, 1..n². 0: all that
+    /// there are.
     /// Always 0 for the others.
     int number = 0;
 
-    static const Technique Unc, Pca, PcaUniform, ShLightmap, Sh2, PreconvolvedAo;
+    static const Technique Unc, Pca, VertexPca, PcaUniform, ShLightmap, Sh2, PreconvolvedAo;
     std::strong_ordering operator<=>(const Technique&) const = default;
 };
 inline constexpr Technique Technique::Unc{TechniqueKind::Unc, 0};
 inline constexpr Technique Technique::Pca{TechniqueKind::Pca, 0};
+inline constexpr Technique Technique::VertexPca{TechniqueKind::VertexPca, 0};
 inline constexpr Technique Technique::PcaUniform{TechniqueKind::PcaUniform, 0};
 inline constexpr Technique Technique::ShLightmap{TechniqueKind::ShLightmap, 0};
 inline constexpr Technique Technique::Sh2{TechniqueKind::Sh2, 0};
 inline constexpr Technique Technique::PreconvolvedAo{TechniqueKind::PreconvolvedAo, 0};
 
-/// "unc", "unc6", "pca", "pca16", "pca-uniform", "sh-lightmap", "sh2", "preconvolved-ao".
+/// "unc", "unc6", "pca", "pca16", "vertex-pca", "pca-uniform", "sh-lightmap", "sh2", "preconvolved-ao".
 std::string techniqueName(Technique technique);
 /// Inverse of techniqueName, for every number in its range.
 /// @return nothing where no technique has that name
@@ -49,7 +52,7 @@ std::optional<Technique> techniqueFromName(std::string_view name);
 std::string techniqueSummary(Technique technique);
 
 /// Techniques of the paper's table in the order in which they are listed: unc, unc3, unc4, unc6, pca, pca4,
-/// pca8, … pca24, pca-uniform, sh-lightmap, sh2, preconvolved-ao.
+/// pca8, … pca24, vertex-pca, pca-uniform, sh-lightmap, sh2, preconvolved-ao.
 const std::vector<Technique>& listedTechniques();
 /// Their names, joined by commas.
 std::string listedTechniqueNames();
@@ -82,6 +85,7 @@ struct TechniqueCost {
 /// With L = ⌈values/4⌉ layers of coefficients:
 ///   unc              4L fetches, 12L multiply-adds
 ///   pca              one fetch more, for the mean
+///   vertex-pca       as pca, per vertex
 ///   pca-uniform      L fetches, F·(12L + 6) multiply-adds, F·(M + 1) uniforms; F functions of the cosine
 ///   sh-lightmap      7 fetches, 45 multiply-adds
 ///   sh2              1 fetch, 45 multiply-adds, 4 uniforms

@@ -50,7 +50,7 @@ std::vector<float> packLightmap(const Lightmap& map) {
 
 bool usesTable(Technique technique) {
     return technique.kind == TechniqueKind::Unc || technique.kind == TechniqueKind::Pca ||
-           technique.kind == TechniqueKind::PreconvolvedAo;
+           technique.kind == TechniqueKind::VertexPca || technique.kind == TechniqueKind::PreconvolvedAo;
 }
 
 TableKind tableKindOf(Technique technique) {
@@ -110,7 +110,7 @@ TechniqueData::TechniqueData(const GlContext& context, Technique technique, cons
     basis_.components = pca.components;
     basis_.mean = pca.mean;
     basis_.basis = pca.basis;
-    defines_ += technique.kind == TechniqueKind::Pca ? "#define WITH_MEAN\n" : "#define UNIFORM_PRODUCTS\n";
+    defines_ += usesTable(technique) ? "#define WITH_MEAN\n" : "#define UNIFORM_PRODUCTS\n";
 }
 
 TechniqueData::TechniqueData(const GlContext& context, Technique technique, const Lightmap& lightmap)
@@ -146,9 +146,8 @@ void TechniqueData::setTable(const NormalTable& table) {
     if (!usesTable(technique_) || table.kind != tableKindOf(technique_))
         throw InputError(techniqueName(technique_),
                          fmt::format("takes no {} table", tableKindName(table.kind)));
-    const int layers = technique_.kind == TechniqueKind::PreconvolvedAo
-                           ? 1
-                           : perPoint_ + (technique_.kind == TechniqueKind::Pca ? 1 : 0);
+    const int layers =
+        technique_.kind == TechniqueKind::PreconvolvedAo ? 1 : perPoint_ + (readsWeights(technique_) ? 1 : 0);
     if (table.shOrder != shOrder_ || table.layers != layers)
         throw InputError("table",
                          fmt::format("is of order {} with {} layers, the data needs order {} with {}",

@@ -9,11 +9,27 @@
 #include "compress/tabulate_job.h"
 #include "precompute/base/log.h"
 #include "precompute/io/glb.h"
+#include "precompute/mesh/vertex_values.h"
 
 namespace prt::tools {
 namespace {
 
-bool isPart(Technique technique) { return technique.kind == TechniqueKind::Pca && technique.number > 0; }
+// Fewer vectors are fitted about the normals, vertices to the texels that are valid: both are with the
+// visibility.
+bool needsPoints(Technique technique) {
+    return readsVisibility(technique) || technique.kind == TechniqueKind::VertexPca ||
+           (technique.kind == TechniqueKind::Pca && technique.number > 0);
+}
+
+PcaMap atVertices(const Scene& scene, const VisibilityMap& visibility, PcaMap pca) {
+    if (pca.grid.domain == PointDomain::Vertex) return pca;
+    std::vector<uint8_t> counts(visibility.validity.size());
+    std::ranges::transform(visibility.validity, counts.begin(), [](Validity v) { return !isInside(v); });
+    pca.weights =
+        fitVertexValues(scene, pca.grid.width, pca.grid.height, counts, pca.weights, size_t(pca.components));
+    pca.grid = vertexGrid(scene.vertexCount());
+    return pca;
+}
 
 // Those that were named and those that a comparison always has.
 std::vector<Technique> wantedTechniques(const RelightArguments& arguments, bool pcaIsCurrent) {
@@ -73,8 +89,7 @@ RelightData loadRelightData(const RelightArguments& arguments) {
     const bool pcaIsCurrent = hasPca && data.bundle.staleReason("pca.exr", false).empty();
     std::vector<Technique> wanted = wantedTechniques(arguments, pcaIsCurrent);
     const bool all = arguments.allTechniques;
-    // Weights of fewer vectors are fitted about the normals, which are with the visibility.
-    if (all || std::ranges::any_of(wanted, [](Technique t) { return readsVisibility(t) || isPart(t); })) {
+    if (all || std::ranges::any_of(wanted, needsPoints)) {
         data.bundle.require("visibility.exr", precompute);
         data.visibility = readVisibilityFile(data.bundle.pathOf("visibility.exr").string());
         data.shOrder = data.visibility->shOrder;
@@ -119,12 +134,16 @@ void RelightTechniques::addTo(Renderer& renderer) {
                 renderer.add(technique, reduceOrder(*data_.visibility, bands));
             else
                 renderer.add(technique, *data_.visibility);
-        } else if (technique.number > 0) {
-            renderer.add(technique,
-                         reduceComponents(*data_.pca, data_.visibility->normals, technique.number));
-        } else {
-            renderer.add(technique, *data_.pca);
+            continue;
         }
+        const PcaMap reduced = technique.number > 0
+                                   ? reduceComponents(*data_.pca, data_.visibility->normals, technique.number)
+                                   : PcaMap();
+        const PcaMap& pca = technique.number > 0 ? reduced : *data_.pca;
+        if (technique.kind == TechniqueKind::VertexPca)
+            renderer.add(technique, atVertices(data_.scene, *data_.visibility, pca));
+        else
+            renderer.add(technique, pca);
     }
 }
 
@@ -141,7 +160,8 @@ const char* RelightTechniques::setLight(Renderer& renderer, Technique technique,
 
 const char* RelightTechniques::makeLight(Renderer& renderer, Technique used,
                                          const std::vector<double>& weights, double rotationRad) {
-    if (rotationRad == 0 && (used == Technique::Unc || used == Technique::Pca)) {
+    const bool all = used == Technique::Unc || used == Technique::Pca || used == Technique::VertexPca;
+    if (rotationRad == 0 && all) {
         const TableKind kind = used == Technique::Unc ? TableKind::LightCosine : TableKind::TripleProduct;
         if (const auto table = blendStored(kind, weights)) {
             renderer.setTable(used, *table);

@@ -1,5 +1,6 @@
 // Every technique against a slow evaluation of its formula on the CPU, with light made by LiveLight as a user
 // has it.
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -180,6 +181,24 @@ TEST_P(Techniques, PaperVariantHasThreeBandsOfTheCosine) {
         1e-5);
 }
 
+// Whatever the domain of the other data: weights per vertex are drawn per vertex.
+TEST_P(Techniques, VertexPcaDrawsWeightsOfVertices) {
+    const LiveLight live(environments_, kOrder, {});
+    PcaMap vertices = pca_;
+    vertices.grid = vertexGrid(scene_.vertexCount());
+    vertices.weights.clear();
+    for (size_t v = 0; v < vertices.grid.count; ++v)
+        vertices.weights.insert(vertices.weights.end(), pca_.weights.begin(), pca_.weights.begin() + 6);
+    Renderer renderer(context_, scene_, nullptr, &pca_);
+    renderer.add(Technique::VertexPca, vertices);
+    for (const Technique technique : {Technique::Pca, Technique::VertexPca})
+        renderer.setLight(technique, live, {1.0}, 0);
+    const FloatImage a = renderer.render(facing(), Technique::Pca, kSmall).irradiance,
+                     b = renderer.render(facing(), Technique::VertexPca, kSmall).irradiance;
+    for (size_t i = 0; i < a.pixels.size(); ++i) ASSERT_NEAR(a.pixels[i], b.pixels[i], 1e-4);
+    EXPECT_GT(*std::ranges::max_element(a.pixels), 0.1f);
+}
+
 TEST_P(Techniques, LightmapIsWhatItsCoefficientsSay) {
     Lightmap map;
     map.grid = visibility_.grid;
@@ -272,6 +291,7 @@ TEST(TechniqueNames, AreReadBack) {
         EXPECT_FALSE(techniqueSummary(technique).empty());
     }
     EXPECT_EQ(techniqueFromName("pca100"), (Technique{TechniqueKind::Pca, 100}));
+    EXPECT_EQ(techniqueFromName("vertex-pca7"), (Technique{TechniqueKind::VertexPca, 7}));
     for (const char* name :
          {"", "unc0", "unc03", "unc11", "pca101", "pca-uniform4", "sh3", "Unc", "unc6 ", "pca-4"})
         EXPECT_FALSE(techniqueFromName(name)) << name;
@@ -291,6 +311,8 @@ TEST(TechniqueNames, NeedsAndCosts) {
     EXPECT_EQ(techniqueCost({TechniqueKind::Unc, 6}, all, PointDomain::Texel, 12).fetches, 36);
     EXPECT_EQ(techniqueCost(Technique::Pca, all, PointDomain::Texel, 12).fetches, 17);
     EXPECT_EQ(techniqueCost(Technique::Pca, all, PointDomain::Vertex, 12).fetches, 25);
+    EXPECT_EQ(techniqueCost({TechniqueKind::VertexPca, 8}, all, PointDomain::Texel, 12).fetches, 13);
+    EXPECT_FALSE(canDraw({TechniqueKind::VertexPca, 20}, all));
     EXPECT_EQ(techniqueCost(Technique::PcaUniform, all, PointDomain::Texel, 12).uniforms, 69 * 17);
     EXPECT_EQ(techniqueCost(Technique::ShLightmap, all, PointDomain::Texel, 12).fetches, 7);
     EXPECT_EQ(techniqueCost(Technique::Sh2, all, PointDomain::Texel, 12).fetches, 1);
