@@ -37,6 +37,8 @@ const std::vector<MeasureCommand> kMeasureCommands = {
      runMeasureSampling},
     {"tables", "Iwanicki & Sloan Secs. 3.2 and 3.3: error, size and time of tables over the normal",
      runMeasureTables},
+    {"techniques", "Iwanicki & Sloan Figs. 3 to 7: every technique beside ray tracing, and its error",
+     runMeasureTechniques},
 };
 
 std::string usage() {

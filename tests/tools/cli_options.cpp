@@ -9,8 +9,8 @@ namespace {
 const std::vector<std::string> kCommands = {"precompute", "compress", "tabulate", "lightmap",
                                             "relight",    "export",   "info"};
 const std::vector<std::string> kMeasurements = {
-    "bake",    "basis",      "compression", "error",    "parameterization",
-    "product", "projection", "rotation",    "sampling", "tables"};
+    "bake",    "basis",      "compression", "error",    "frame-time", "parameterization",
+    "product", "projection", "rotation",    "sampling", "tables",     "techniques"};
 
 TEST(Options, NoArgumentsPrintsUsageAndFails) {
     Folder folder;

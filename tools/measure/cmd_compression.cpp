@@ -12,6 +12,7 @@
 #include "tools/measure/compression_images.h"
 #include "tools/measure/compression_tables.h"
 #include "tools/measure/output.h"
+#include "tools/measure/view_arguments.h"
 #include "tools/relight_arguments.h"
 
 namespace prt::tools {
@@ -50,14 +51,7 @@ struct Arguments {
                      "times are medians of so many frames; 0: none are timed");
         line.integer("--reference-rays", view.referenceRays, 64, 1 << 20,
                      "directions of the pictures' reference, before refinement");
-        line.text("--eye", camera.eyeText, "X,Y,Z", "camera position; else it is placed by the next three");
-        line.text("--target", camera.targetText, "X,Y,Z", "point looked at; else the middle of the scene");
-        line.real("--azimuth", camera.azimuthDeg, -1e6, 1e6,
-                  "of the camera around the scene, degrees from +Z towards +X");
-        line.real("--elevation", camera.elevationDeg, -89, 89, "of the camera above the horizon, degrees");
-        line.real("--distance", camera.distance, 0.01, 100,
-                  "of the camera, 1 = the scene's bounding sphere fills the picture");
-        line.real("--fov", camera.fovDeg, 1, 160, "vertical field of view, degrees");
+        addCameraOptions(line, camera);
         addMeasureOptions(line, options);
     }
     void finish() {

@@ -9,10 +9,10 @@
 #include "precompute/base/log.h"
 #include "precompute/base/parallel.h"
 #include "tools/command_line.h"
-#include "tools/environment_arguments.h"
 #include "tools/measure/commands.h"
 #include "tools/measure/frame_time.h"
 #include "tools/measure/output.h"
+#include "tools/measure/view_arguments.h"
 #include "tools/relight_arguments.h"
 #include "tools/relight_techniques.h"
 
@@ -33,54 +33,28 @@ struct Arguments {
 
     void addTo(CommandLine& line) {
         line.positional("BUNDLE", relight.bundlePath, "bundle made by prt precompute and prt compress");
-        line.textList("--env", relight.environmentTexts, "ENV[:WEIGHT]",
-                      "environment and its weight (1); repeat to blend; none: sky:clear");
-        addEnvironmentOptions(line, relight.environmentOptions);
-        line.textList("--technique", relight.techniqueNames, "NAME",
-                      "repeat to time several; unc6 is always timed where the bundle has six bands [" +
-                          listedTechniqueNames() + " | all; default all]");
+        addLightOptions(line, relight, "blend");
+        addTechniqueOption(line, relight,
+                           "repeat to time several; unc6 is always timed where the bundle has six bands");
         line.choice("--context", context,
                     {glContextKindName(GlContextKind::OsMesa), glContextKindName(GlContextKind::Egl),
                      glContextKindName(GlContextKind::Window)},
                     "draw in software, through EGL, or on the display's GPU");
         line.integer("--frames", frames, 20, 100000, "of each technique, in turn");
         line.text("--size", relight.sizeText, "WIDTHxHEIGHT", "pixels");
-        line.text("--eye", relight.eyeText, "X,Y,Z", "camera position; else it is placed by the next three");
-        line.text("--target", relight.targetText, "X,Y,Z", "point looked at; else the middle of the scene");
-        line.real("--azimuth", relight.azimuthDeg, -1e6, 1e6,
-                  "of the camera around the scene, degrees from +Z towards +X");
-        line.real("--elevation", relight.elevationDeg, -89, 89, "of the camera above the horizon, degrees");
-        line.real("--distance", relight.distance, 0.01, 100,
-                  "of the camera, 1 = the scene's bounding sphere fills the picture; where it is not given, "
-                  "the camera comes nearer until 60 % of the pixels are covered");
-        line.real("--fov", relight.fovDeg, 1, 160, "vertical field of view, degrees");
+        addCameraOptions(
+            line, relight,
+            "; where it is not given, the camera comes nearer until 60 % of the pixels are covered");
         line.flag("--no-normal-map", relight.noNormalMap, "shade with the mesh's own normals");
         addMeasureOptions(line, options);
     }
     void finish(const CommandLine& line) {
-        if (relight.techniqueNames.empty()) relight.techniqueNames.push_back("all");
-        if (std::ranges::find(relight.techniqueNames, "reference") != relight.techniqueNames.end())
-            throw UsageError("--technique", "the reference is traced, not drawn",
-                             "use one of " + listedTechniqueNames() + ", all");
+        finishTechniques(relight);
         relight.timeFrames = frames;
         relight.finish();
         distanceGiven = line.isGiven("--distance") || line.isGiven("--eye");
     }
 };
-
-// One for each that is drawn; of two names for the same (unc and unc6) the one with a number.
-std::vector<Technique> withoutTwins(const RelightData& data, const RelightTechniques& techniques) {
-    std::vector<Technique> kept;
-    for (const Technique technique : data.techniques) {
-        const auto twin = std::ranges::find_if(
-            kept, [&](Technique other) { return techniques.drawn(other) == techniques.drawn(technique); });
-        if (twin == kept.end())
-            kept.push_back(technique);
-        else
-            *twin = technique;
-    }
-    return kept;
-}
 
 // What ratios are taken to is timed whether or not it was named.
 void addReference(RelightArguments& relight) {

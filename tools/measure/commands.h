@@ -14,5 +14,6 @@ void runMeasureProduct(int argc, char** argv);
 void runMeasureProjection(int argc, char** argv);
 void runMeasureSampling(int argc, char** argv);
 void runMeasureTables(int argc, char** argv);
+void runMeasureTechniques(int argc, char** argv);
 
 }  // namespace prt::tools

@@ -78,4 +78,18 @@ ByteImage composeSheet(const std::string& title, const std::vector<std::vector<S
     return sheet;
 }
 
+std::vector<std::vector<SheetCell>> inColumns(const std::vector<std::vector<SheetCell>>& stacked,
+                                              size_t columns) {
+    PRT_CHECK(!stacked.empty());
+    PRT_CHECK_LT(size_t(0), columns);
+    std::vector<std::vector<SheetCell>> rows;
+    for (size_t first = 0; first < stacked[0].size(); first += columns)
+        for (const std::vector<SheetCell>& cells : stacked) {
+            PRT_CHECK_EQ(cells.size(), stacked[0].size());
+            const size_t end = std::min(first + columns, cells.size());
+            rows.emplace_back(cells.begin() + ptrdiff_t(first), cells.begin() + ptrdiff_t(end));
+        }
+    return rows;
+}
+
 }  // namespace prt::tools

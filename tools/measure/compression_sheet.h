@@ -20,4 +20,9 @@ struct SheetCell {
 /// @return 3 channels
 ByteImage composeSheet(const std::string& title, const std::vector<std::vector<SheetCell>>& rows);
 
+/// Rows of a sheet: `stacked[i][k]` above `stacked[i + 1][k]`, broken after so many columns.
+/// @param stacked  lists of one length
+std::vector<std::vector<SheetCell>> inColumns(const std::vector<std::vector<SheetCell>>& stacked,
+                                              size_t columns);
+
 }  // namespace prt::tools
