@@ -92,6 +92,7 @@
     X(PFNGLTEXTUREBUFFERPROC, TextureBuffer)                             \
     X(PFNGLTEXTUREPARAMETERIPROC, TextureParameteri)                     \
     X(PFNGLTEXTURESTORAGE2DPROC, TextureStorage2D)                       \
+    X(PFNGLTEXTURESTORAGE2DMULTISAMPLEPROC, TextureStorage2DMultisample) \
     X(PFNGLTEXTURESTORAGE3DPROC, TextureStorage3D)                       \
     X(PFNGLTEXTURESUBIMAGE2DPROC, TextureSubImage2D)                     \
     X(PFNGLTEXTURESUBIMAGE3DPROC, TextureSubImage3D)                     \

@@ -56,7 +56,7 @@ GlObject makeTexture(const GlFunctions& gl, GLenum target) {
     GLuint name = 0;
     gl.CreateTextures(target, 1, &name);
     // Shaders fetch texels by number; what is filtered gets a sampler. Integer textures need this, too.
-    if (target != GL_TEXTURE_BUFFER) {
+    if (target != GL_TEXTURE_BUFFER && target != GL_TEXTURE_2D_MULTISAMPLE) {
         gl.TextureParameteri(name, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
         gl.TextureParameteri(name, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
     }
@@ -84,6 +84,13 @@ GlObject makeSampler(const GlFunctions& gl) {
 GlObject makeImage(const GlFunctions& gl, GLenum internalFormat, int width, int height) {
     GlObject image = makeTexture(gl, GL_TEXTURE_2D);
     gl.TextureStorage2D(image.name(), 1, internalFormat, width, height);
+    return image;
+}
+
+GlObject makeSampledImage(const GlFunctions& gl, GLenum internalFormat, int width, int height, int samples) {
+    if (samples == 1) return makeImage(gl, internalFormat, width, height);
+    GlObject image = makeTexture(gl, GL_TEXTURE_2D_MULTISAMPLE);
+    gl.TextureStorage2DMultisample(image.name(), samples, internalFormat, width, height, GL_TRUE);
     return image;
 }
 
@@ -129,7 +136,7 @@ GlObject makeFramebufferOver(const GlFunctions& gl, std::initializer_list<GLuint
         buffers.push_back(GLenum(GL_COLOR_ATTACHMENT0 + buffers.size()));
         gl.NamedFramebufferTexture(framebuffer.name(), buffers.back(), colour, 0);
     }
-    gl.NamedFramebufferTexture(framebuffer.name(), GL_DEPTH_ATTACHMENT, depth, 0);
+    if (depth != 0) gl.NamedFramebufferTexture(framebuffer.name(), GL_DEPTH_ATTACHMENT, depth, 0);
     gl.NamedFramebufferDrawBuffers(framebuffer.name(), GLsizei(buffers.size()), buffers.data());
     const GLenum status = gl.CheckNamedFramebufferStatus(framebuffer.name(), GL_DRAW_FRAMEBUFFER);
     if (status != GL_FRAMEBUFFER_COMPLETE)

@@ -52,6 +52,10 @@ GlObject makeSampler(const GlFunctions& gl);
 /// One 2D image with one level.
 GlObject makeImage(const GlFunctions& gl, GLenum internalFormat, int width, int height);
 
+/// The same with so many samples to a pixel; of more than one the texture is multisampled, with samples at
+/// the same places in every pixel.
+GlObject makeSampledImage(const GlFunctions& gl, GLenum internalFormat, int width, int height, int samples);
+
 /// A buffer that shaders read with texelFetch.
 class GlBufferTexture {
   public:
@@ -103,7 +107,7 @@ class GlProgram {
     GlObject program_;
 };
 
-/// A framebuffer that draws into these images, in order, with a depth image.
+/// A framebuffer that draws into these images, in order, with a depth image (0: none).
 GlObject makeFramebufferOver(const GlFunctions& gl, std::initializer_list<GLuint> colours, GLuint depth);
 
 GLint glInteger(const GlFunctions& gl, GLenum what);

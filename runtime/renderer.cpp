@@ -1,11 +1,12 @@
-// Sources: [IwanickiSloan2012, Sec. 3 to 5] for the techniques. Deferred: one pass finds what is seen, the
-// second lights each pixel once, so that surface() gives exactly the points that render() shades.
+// Sources: [IwanickiSloan2012, Sec. 3 to 5] for the techniques. What is seen is found before it is lit
+// (runtime/frame_drawer.h), so that surface() gives exactly the points that render() shades.
 #include "runtime/renderer.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <map>
+#include <utility>
 #include <vector>
 
 #include "precompute/base/check.h"
@@ -13,39 +14,20 @@
 #include "precompute/base/log.h"
 #include "precompute/base/parallel.h"
 #include "precompute/math/sh.h"
-#include "runtime/camera_frame.h"
 #include "runtime/display_pass.h"
+#include "runtime/frame_drawer.h"
 #include "runtime/gl_objects.h"
 #include "runtime/gl_state.h"
-#include "runtime/scene_images.h"
+#include "runtime/light_program.h"
 #include "runtime/technique_data.h"
 
 namespace prt {
 namespace {
 
-// Everything drawn for one image size.
-struct Targets {
-    int width = 0, height = 0;
-    GlObject place, normal, albedo, triangle, depth, radiance, irradiance;
-    GlObject surfaceFrame, lightFrame;
-
-    Targets(const GlContext& context, int w, int h) : width(w), height(h) {
-        const GlFunctions& gl = context.gl();
-        for (GlObject* image : {&place, &normal, &albedo, &radiance, &irradiance})
-            *image = makeImage(gl, GL_RGBA32F, w, h);
-        triangle = makeImage(gl, GL_R32UI, w, h);
-        depth = makeImage(gl, GL_DEPTH_COMPONENT32F, w, h);
-        context.check("making the image");
-        surfaceFrame = makeFramebufferOver(gl, {place.name(), normal.name(), albedo.name(), triangle.name()},
-                                           depth.name());
-        lightFrame = makeFramebufferOver(gl, {radiance.name(), irradiance.name()}, depth.name());
-    }
-};
-
 // Colours of points, and the program that shows them.
 struct PointColours {
     CoefficientImage colours;
-    GlProgram program;
+    LightProgram program;
 };
 
 std::vector<float> readImage(const GlFunctions& gl, const GlObject& image, size_t pixels) {
@@ -78,24 +60,17 @@ Vec3f fromRgba(const float* rgba) { return {rgba[0], rgba[1], rgba[2]}; }
 
 struct Renderer::State {
     State(GlContext& glContext, const Scene& source)
-        : context(glContext),
-          gl(glContext.gl()),
-          scene(glContext, source),
-          bounds(sceneBounds(source)),
-          display(glContext) {
+        : context(glContext), gl(glContext.gl()), frame(glContext, source), display(glContext) {
         geometry.positions = source.positions;
         geometry.indices = source.indices;
         hasAtlas = !source.uv1.empty();
     }
 
-    CameraFrame begin(const Camera& camera, const RenderOptions& options);
-    void drawSurface(const CameraFrame& camera, const RenderOptions& options);
-    void drawLight(const GlProgram& program, std::span<const SunLight> lit);
-    void drawBackground(const CameraFrame& camera);
-    void startLight();
-    void drawFrame(const CameraFrame& camera, const TechniqueData* data, const RenderOptions& options);
-    void drawPoints(const Camera& camera, const RenderOptions& options);
-    const GlProgram& useBaseProgram();
+    /// @param data  none: the base pass
+    void drawFrame(const CameraFrame& camera, const TechniqueData* data, const RenderOptions& options,
+                   const DisplayOptions* shown = nullptr);
+    void drawPoints(const Camera& camera, const RenderOptions& options, const DisplayOptions* shown);
+    void show(const RenderOptions& options, const DisplayOptions& display, const DrawTarget& target);
     TechniqueData& dataOf(Technique technique);
     const TechniqueData& ready(Technique technique);
     template <class Map>
@@ -103,113 +78,46 @@ struct Renderer::State {
 
     GlContext& context;
     const GlFunctions& gl;
-    SceneImages scene;
-    Bounds bounds;
+    FrameDrawer frame;
     Scene geometry;  // positions and indices, for surface()
     bool hasAtlas = false;
     std::map<Technique, TechniqueData> techniques;
-    std::vector<SunLight> suns;  // without their shadows
-    CoefficientImage sunShadows;
-    GlProgram backgroundProgram;
-    std::optional<GlProgram> baseProgram;
+    std::optional<LightProgram> baseProgram;
     std::optional<PointColours> points;
     DisplayPass display;
-    GlObject background;
-    float backgroundRotationRad = 0;
-    GlObject vertexArray;
-    std::unique_ptr<Targets> targets;
 };
 
-CameraFrame Renderer::State::begin(const Camera& camera, const RenderOptions& options) {
-    const int width = options.width, height = options.height;
-    checkImageSize(gl, "image", width, height, "choose another size");
-    PRT_CHECK_EQ(options.samples, 1);
-    const CameraFrame frame = makeCameraFrame(camera, width, height, bounds);
-    if (!targets || targets->width != width || targets->height != height) {
-        targets.reset();
-        targets = std::make_unique<Targets>(context, width, height);
-    }
-    return frame;
-}
-
-void Renderer::State::drawSurface(const CameraFrame& camera, const RenderOptions& options) {
-    const GLuint frame = targets->surfaceFrame.name();
-    const GLuint nothing[4] = {kNoTriangle, 0, 0, 0};
-    const GLfloat farthest = 0;
-    gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, frame);
-    gl.Viewport(0, 0, targets->width, targets->height);
-    gl.ClipControl(GL_UPPER_LEFT, GL_ZERO_TO_ONE);
-    gl.Enable(GL_DEPTH_TEST);
-    gl.DepthMask(GL_TRUE);
-    gl.ClearNamedFramebufferuiv(frame, GL_COLOR, 3, nothing);
-    gl.ClearNamedFramebufferfv(frame, GL_DEPTH, 0, &farthest);
-    gl.DepthFunc(GL_GREATER);
-    scene.draw(camera, options.normalMap);
-}
-
-const GlProgram& Renderer::State::useBaseProgram() {
-    if (!baseProgram) baseProgram.emplace(gl, "screen.vert", "light.frag", "#define BASE_PASS\n");
-    baseProgram->use();
-    return *baseProgram;
-}
-
-// Over the pixels whose depth is greater than that of nothing, with a program in use.
-void Renderer::State::drawLight(const GlProgram& program, std::span<const SunLight> lit) {
-    gl.DepthFunc(GL_LESS);
-    program.set("sunCount", int(lit.size()));
-    for (size_t i = 0; i < lit.size(); ++i) {
-        program.set(fmt::format("sunDirection[{}]", i).c_str(), lit[i].direction);
-        program.set(fmt::format("sunIrradiance[{}]", i).c_str(), lit[i].irradiance);
-    }
-    const std::pair<GLuint, GLuint> images[] = {{0, targets->place.name()},  {1, targets->normal.name()},
-                                                {2, targets->albedo.name()}, {3, targets->triangle.name()},
-                                                {6, scene.indices()},        {7, sunShadows.texture.name()}};
-    for (const auto& [unit, image] : images)
-        if (image != 0) gl.BindTextureUnit(unit, image);
-    gl.DrawArrays(GL_TRIANGLES, 0, 3);
-}
-
-void Renderer::State::drawBackground(const CameraFrame& camera) {
-    gl.DepthFunc(GL_EQUAL);
-    backgroundProgram.use();
-    backgroundProgram.set("rayCorner", Vec3f(camera.rayCorner.cast<float>()));
-    backgroundProgram.set("rayPerPixelX", Vec3f(camera.rayPerPixelX.cast<float>()));
-    backgroundProgram.set("rayPerPixelY", Vec3f(camera.rayPerPixelY.cast<float>()));
-    backgroundProgram.set("rotationRad", backgroundRotationRad);
-    gl.BindTextureUnit(0, background.name());
-    gl.DrawArrays(GL_TRIANGLES, 0, 3);
-}
-
-void Renderer::State::startLight() {
-    const GLuint frame = targets->lightFrame.name();
-    const GLfloat black[4] = {};
-    gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, frame);
-    gl.DepthMask(GL_FALSE);
-    gl.BindVertexArray(vertexArray.name());
-    gl.ClearNamedFramebufferfv(frame, GL_COLOR, 0, black);
-    gl.ClearNamedFramebufferfv(frame, GL_COLOR, 1, black);
-}
-
-// Without data: the base pass.
 void Renderer::State::drawFrame(const CameraFrame& camera, const TechniqueData* data,
-                                const RenderOptions& options) {
-    drawSurface(camera, options);
-    startLight();
-    if (data)
-        drawLight(data->use(), suns);
-    else
-        drawLight(useBaseProgram(), {});
-    if (background) drawBackground(camera);
+                                const RenderOptions& options, const DisplayOptions* shown) {
+    frame.drawSurface(camera, options.normalMap);
+    if (data) {
+        frame.drawLight(camera, data->use(options.samples), {.shown = shown});
+        return;
+    }
+    if (!baseProgram) baseProgram.emplace(gl, "#define BASE_PASS\n");
+    const GlProgram& program = baseProgram->of(options.samples);
+    program.use();
+    frame.drawLight(camera, program, {.suns = false, .shown = shown});
 }
 
-void Renderer::State::drawPoints(const Camera& camera, const RenderOptions& options) {
+void Renderer::State::drawPoints(const Camera& camera, const RenderOptions& options,
+                                 const DisplayOptions* shown) {
     if (!points) throw InputError("points", "no colours were set", "set them before drawing");
-    drawSurface(begin(camera, options), options);
-    startLight();
-    points->program.use();
-    points->program.set("gridSize", points->colours.grid.width, points->colours.grid.height);
+    const CameraFrame view = frame.begin(camera, options);
+    frame.drawSurface(view, options.normalMap);
+    const GlProgram& program = points->program.of(options.samples);
+    program.use();
+    program.set("gridSize", points->colours.grid.width, points->colours.grid.height);
     gl.BindTextureUnit(4, points->colours.texture.name());
-    drawLight(points->program, {});
+    frame.drawLight(view, program, {.suns = false, .background = false, .shown = shown});
+    context.check("drawing");
+}
+
+// What was drawn; of several samples, drawn as it is shown but for the sRGB curve.
+void Renderer::State::show(const RenderOptions& options, const DisplayOptions& shown,
+                           const DrawTarget& target) {
+    display.draw(frame.targets().radiance.name(), options.width, options.height,
+                 options.samples > 1 ? DisplayOptions() : shown, target);
     context.check("drawing");
 }
 
@@ -232,8 +140,6 @@ Renderer::Renderer(GlContext& context, const Scene& scene, const VisibilityMap* 
     if (visibility) checkGrid(visibility->grid, vertices, !scene.uv1.empty(), "visibility");
     if (pca) checkGrid(pca->grid, vertices, !scene.uv1.empty(), "PCA weights");
     state_ = std::make_unique<State>(context, scene);
-    state_->vertexArray = makeVertexArray(state_->gl);
-    state_->backgroundProgram = GlProgram(state_->gl, "screen.vert", "background.frag", "");
     if (visibility) add(Technique::Unc, *visibility);
     if (pca) add(Technique::Pca, *pca);
     context.check("making the renderer");
@@ -324,40 +230,37 @@ void Renderer::setSuns(std::span<const SunLight> suns, const PointGrid& grid) {
     if (suns.size() > size_t(kMostSuns))
         throw InputError(
             "suns", fmt::format("{} are more than the {} that are drawn at a time", suns.size(), kMostSuns));
-    s.suns.clear();
-    s.sunShadows = {};
-    if (suns.empty()) return;
+    if (suns.empty()) {
+        s.frame.setSuns({}, {});
+        return;
+    }
+    std::vector<SunLight> lights;
     std::vector<float> shadows(grid.count * suns.size());
     for (size_t i = 0; i < suns.size(); ++i) {
         PRT_CHECK_EQ(suns[i].shadow.size(), grid.count);
         for (size_t point = 0; point < grid.count; ++point)
             shadows[point * suns.size() + i] = suns[i].shadow[point];
-        s.suns.push_back({suns[i].direction, suns[i].irradiance, {}});
+        lights.push_back({suns[i].direction, suns[i].irradiance, {}});
     }
-    s.sunShadows = uploadCoefficients(s.context, grid, int(suns.size()), shadows, "shadows of suns");
+    s.frame.setSuns(std::move(lights),
+                    uploadCoefficients(s.context, grid, int(suns.size()), shadows, "shadows of suns"));
 }
 
 void Renderer::setBackground(const FloatImage& latLong, double rotationRad) {
     PRT_CHECK_EQ(latLong.channels, 3);
-    State& s = *state_;
-    const GlStateGuard guard(s.context);
-    checkImageSize(s.gl, "background", latLong.width, latLong.height, "scale it down");
-    s.background = makeImage(s.gl, GL_RGBA32F, latLong.width, latLong.height);
-    s.gl.TextureSubImage2D(s.background.name(), 0, 0, 0, latLong.width, latLong.height, GL_RGB, GL_FLOAT,
-                           latLong.pixels.data());
-    s.backgroundRotationRad = float(rotationRad);
-    s.context.check("uploading the background");
+    const GlStateGuard guard(state_->context);
+    state_->frame.setBackground(latLong, rotationRad);
 }
 
 RenderedFrame Renderer::render(const Camera& camera, Technique technique, const RenderOptions& options) {
     State& s = *state_;
     const GlStateGuard guard(s.context);
     const TechniqueData& data = s.ready(technique);
-    s.drawFrame(s.begin(camera, options), &data, options);
+    s.drawFrame(s.frame.begin(camera, options), &data, options);
     s.context.check("drawing");
     RenderedFrame frame;
-    frame.radiance = readRgb(s.gl, s.targets->radiance, options.width, options.height);
-    frame.irradiance = readRgb(s.gl, s.targets->irradiance, options.width, options.height);
+    frame.radiance = readRgb(s.gl, s.frame.targets().radiance, options.width, options.height);
+    frame.irradiance = readRgb(s.gl, s.frame.targets().irradiance, options.width, options.height);
     s.context.check("reading the image back");
     return frame;
 }
@@ -367,9 +270,27 @@ void Renderer::draw(const Camera& camera, Technique technique, const RenderOptio
     State& s = *state_;
     const GlStateGuard guard(s.context);
     const TechniqueData& data = s.ready(technique);
-    s.drawFrame(s.begin(camera, options), &data, options);
-    s.display.draw(s.targets->radiance.name(), options.width, options.height, display, target);
-    s.context.check("drawing");
+    s.drawFrame(s.frame.begin(camera, options), &data, options, &display);
+    s.show(options, display, target);
+}
+
+ByteImage Renderer::picture(const Camera& camera, Technique technique, const RenderOptions& options,
+                            const DisplayOptions& display) {
+    State& s = *state_;
+    const GlStateGuard guard(s.context);
+    checkImageSize(s.gl, "image", options.width, options.height, "choose another size");
+    const GlObject colours = makeImage(s.gl, GL_RGBA8, options.width, options.height);
+    const GlObject framebuffer = makeFramebufferOver(s.gl, {colours.name()}, 0);
+    draw(camera, technique, options, display, {framebuffer.name(), 0, 0});
+    ByteImage image{options.width, options.height, 4, {}};
+    const size_t rowBytes = size_t(options.width) * 4, rows = size_t(options.height);
+    std::vector<uint8_t> bytes(rowBytes * rows);
+    s.gl.GetTextureImage(colours.name(), 0, GL_RGBA, GL_UNSIGNED_BYTE, GLsizei(bytes.size()), bytes.data());
+    s.context.check("reading the image back");
+    for (size_t y = rows; y-- > 0;)  // OpenGL's lowest comes first
+        image.pixels.insert(image.pixels.end(), bytes.begin() + ptrdiff_t(y * rowBytes),
+                            bytes.begin() + ptrdiff_t((y + 1) * rowBytes));
+    return image;
 }
 
 void Renderer::setPointColours(const PointGrid& grid, std::span<const float> rgb, bool smooth) {
@@ -384,23 +305,22 @@ void Renderer::setPointColours(const PointGrid& grid, std::span<const float> rgb
         for (const GLenum filter : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER})
             s.gl.TextureParameteri(colours.texture.name(), filter, GL_NEAREST);
     }
-    s.points.emplace(PointColours{std::move(colours), GlProgram(s.gl, "screen.vert", "light.frag", defines)});
+    s.points.emplace(PointColours{std::move(colours), LightProgram(s.gl, defines)});
 }
 
 void Renderer::drawPoints(const Camera& camera, const RenderOptions& options, const DisplayOptions& display,
                           const DrawTarget& target) {
     State& s = *state_;
     const GlStateGuard guard(s.context);
-    s.drawPoints(camera, options);
-    s.display.draw(s.targets->radiance.name(), options.width, options.height, display, target);
-    s.context.check("drawing");
+    s.drawPoints(camera, options, &display);
+    s.show(options, display, target);
 }
 
 FloatImage Renderer::renderPoints(const Camera& camera, const RenderOptions& options) {
     State& s = *state_;
     const GlStateGuard guard(s.context);
-    s.drawPoints(camera, options);
-    FloatImage image = readRgb(s.gl, s.targets->radiance, options.width, options.height);
+    s.drawPoints(camera, options, nullptr);
+    FloatImage image = readRgb(s.gl, s.frame.targets().radiance, options.width, options.height);
     s.context.check("reading the image back");
     return image;
 }
@@ -415,17 +335,20 @@ void Renderer::drawImage(const FloatImage& image, const DisplayOptions& display,
 SurfaceImage Renderer::surface(const Camera& camera, const RenderOptions& options) {
     State& s = *state_;
     const GlStateGuard guard(s.context);
-    s.drawSurface(s.begin(camera, options), options);
+    RenderOptions single = options;
+    single.samples = 1;
+    s.frame.drawSurface(s.frame.begin(camera, single), options.normalMap);
     s.context.check("drawing");
+    const FrameTargets& targets = s.frame.targets();
     SurfaceImage image;
     image.width = options.width;
     image.height = options.height;
     const size_t pixels = size_t(options.width) * size_t(options.height);
-    const std::vector<float> places = readImage(s.gl, s.targets->place, pixels);
-    const std::vector<float> normals = readImage(s.gl, s.targets->normal, pixels);
-    const std::vector<float> albedos = readImage(s.gl, s.targets->albedo, pixels);
+    const std::vector<float> places = readImage(s.gl, targets.place, pixels);
+    const std::vector<float> normals = readImage(s.gl, targets.normal, pixels);
+    const std::vector<float> albedos = readImage(s.gl, targets.albedo, pixels);
     image.triangle.resize(pixels);
-    s.gl.GetTextureImage(s.targets->triangle.name(), 0, GL_RED_INTEGER, GL_UNSIGNED_INT,
+    s.gl.GetTextureImage(targets.triangle.name(), 0, GL_RED_INTEGER, GL_UNSIGNED_INT,
                          GLsizei(pixels * sizeof(uint32_t)), image.triangle.data());
     s.context.check("reading the image back");
     for (auto* vectors : {&image.position, &image.geometricNormal, &image.shadingNormal, &image.albedo})
@@ -458,7 +381,7 @@ double Renderer::frameMilliseconds(const Camera& camera, std::optional<Technique
     State& s = *state_;
     const GlStateGuard guard(s.context);
     const TechniqueData* data = technique ? &s.ready(*technique) : nullptr;
-    const CameraFrame view = s.begin(camera, options);
+    const CameraFrame view = s.frame.begin(camera, options);
     std::vector<double> times;
     for (int i = 0; i < warmUpFrames + frames; ++i) {
         throwIfInterrupted();

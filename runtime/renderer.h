@@ -22,7 +22,9 @@ namespace prt {
 struct RenderOptions {
     int width = 1280, height = 800;
     bool normalMap = true;
-    int samples = 1;  ///< per pixel: 1, at its centre
+    /// Of a pixel, 1 (at its centre) or 4. Of four, each triangle that the pixel shows is shaded once, and
+    /// its samples are averaged.
+    int samples = 1;
 };
 
 /// How radiance becomes the colours of a display; as toDisplay.
@@ -41,7 +43,8 @@ struct RenderedFrame {
     /// 3 channels: albedo/π·E; background where nothing is seen. Linear in the light, so slightly negative
     /// where the truncated series of E is; toDisplay shows that as black.
     FloatImage radiance;
-    FloatImage irradiance;  ///< 3 channels: E; 0 where nothing is seen
+    /// 3 channels: E; 0 where nothing is seen. Of four samples, the mean of those that see something.
+    FloatImage irradiance;
 };
 
 /// A light from one small disc of the sky, with its own shadow.
@@ -98,9 +101,18 @@ class Renderer {
     /// The same frame, as a display shows it, into colour output 0 of a framebuffer: within 1/255 of
     /// toDisplay of what render() gives, right way up; pixels outside of the picture stay. Values are sRGB
     /// whatever the framebuffer's format is: it is written as it is, without conversion on writing.
+    ///
+    /// Of four samples, exposure and tone curve come before the mean (render() takes the mean of linear
+    /// radiance): an edge before a bright sky is smooth only so.
     /// @throws InputError  as render(); a target that is no complete framebuffer
     void draw(const Camera& camera, Technique technique, const RenderOptions& options,
               const DisplayOptions& display, const DrawTarget& target);
+
+    /// What draw() shows, as an image.
+    /// @return 4 channels, alpha 255
+    /// @throws InputError  as render()
+    ByteImage picture(const Camera& camera, Technique technique, const RenderOptions& options,
+                      const DisplayOptions& display);
 
     /// Colours of the points of a grid, to look at what is stored there (weights, coefficients, validity,
     /// charts); replaces the previous ones.
@@ -123,7 +135,8 @@ class Renderer {
     /// @throws InputError  larger than OpenGL takes; target as in draw()
     void drawImage(const FloatImage& image, const DisplayOptions& display, const DrawTarget& target);
 
-    /// The points that render() shades: same geometry, textures, normal maps and filtering.
+    /// The points that render() shades with one sample to a pixel: same geometry, textures, normal maps and
+    /// filtering.
     SurfaceImage surface(const Camera& camera, const RenderOptions& options);
     /// Median time of a frame, ms, glFinish and a clock, after warm-up.
     /// @param technique  none: the base pass, the same frame with an irradiance of 1 (geometry, normal map,

@@ -126,13 +126,16 @@ GLuint SceneImages::texture(const Scene& scene, int index, bool srgb) {
     return entry->second.name();
 }
 
-void SceneImages::draw(const CameraFrame& camera, bool normalMap) const {
-    program_.use();
-    program_.set("eye", camera.eye);
-    program_.set("clipFromEyeOffset", camera.clipFromEyeOffset);
-    program_.set("hasTangents", hasTangents_);
-    program_.set("hasUv0", hasUv0_);
-    program_.set("hasUv1", hasUv1_);
+void SceneImages::draw(const CameraFrame& camera, bool normalMap, int samples) const {
+    if (samples > 1 && !multisampled_)
+        multisampled_.emplace(gl_, "surface.vert", "surface.frag", "#define MULTISAMPLED\n");
+    const GlProgram& program = samples > 1 ? *multisampled_ : program_;
+    program.use();
+    program.set("eye", camera.eye);
+    program.set("clipFromEyeOffset", camera.clipFromEyeOffset);
+    program.set("hasTangents", hasTangents_);
+    program.set("hasUv0", hasUv0_);
+    program.set("hasUv1", hasUv1_);
     const GlBufferTexture* buffers[] = {&indices_, &positions_, &normals_, &tangents_, &uv0_, &uv1_};
     GLuint unit = 0;
     for (const GlBufferTexture* buffer : buffers) gl_.BindTextureUnit(unit++, buffer->texture());
@@ -141,9 +144,9 @@ void SceneImages::draw(const CameraFrame& camera, bool normalMap) const {
     gl_.BindVertexArray(vertexArray_.name());
     for (const Run& run : runs_) {
         const Material& material = materials_[run.material];
-        program_.set("baseColor", material.baseColor);
-        program_.set("normalScale", material.normalScale);
-        program_.set("useNormalMap", material.hasNormalMap && normalMap);
+        program.set("baseColor", material.baseColor);
+        program.set("normalScale", material.normalScale);
+        program.set("useNormalMap", material.hasNormalMap && normalMap);
         gl_.BindTextureUnit(6, material.baseColorTexture);
         gl_.BindTextureUnit(7, material.normalTexture);
         // The back of a wall must not hide the room behind it.

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <vector>
 
 #include "precompute/io/scene.h"
@@ -18,7 +19,8 @@ class SceneImages {
     SceneImages(const GlContext& context, const Scene& scene);
 
     /// Draws every primitive into the bound framebuffer (outputs of surface.frag).
-    void draw(const CameraFrame& camera, bool normalMap) const;
+    /// @param samples  of its pixels
+    void draw(const CameraFrame& camera, bool normalMap, int samples) const;
     /// Vertex indices, three per triangle.
     GLuint indices() const { return indices_.texture(); }
 
@@ -48,6 +50,7 @@ class SceneImages {
     std::map<std::pair<int, bool>, GlObject> textures_;
     GlObject white_, sampler_, vertexArray_;
     GlProgram program_;
+    mutable std::optional<GlProgram> multisampled_;  // made when first drawn with
 };
 
 }  // namespace prt

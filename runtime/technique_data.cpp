@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -137,8 +136,7 @@ void TechniqueData::upload(const PointGrid& grid, int perPoint, std::span<const 
 
 void TechniqueData::chooseProgram(const std::string& further) {
     const std::string defines = defines_ + (perVertex_ ? "#define PER_VERTEX\n" : "") + further;
-    if (!programs_.contains(defines))
-        programs_.emplace(defines, GlProgram(context_.gl(), "screen.vert", "light.frag", defines));
+    if (!programs_.contains(defines)) programs_.try_emplace(defines, context_.gl(), defines);
     program_ = &programs_.at(defines);
 }
 
@@ -179,10 +177,10 @@ void TechniqueData::setProducts(const EnvironmentSh& light, int cosineBands) {
                                      "{} that OpenGL takes here",
                                      basis_.components, cosineBands, functions * vectors, limit - kOther),
                          "use pca, fewer vectors, or the paper's variant of the cosine");
-    const std::vector<Vec3f> products = uniformProducts(light, basis_, cosineBands);
+    lightValues_ = uniformProducts(light, basis_, cosineBands);
+    lightUniform_ = "products";
     chooseProgram(fmt::format("#define COSINE_BANDS {}\n#define COSINE_FUNCTIONS {}\n#define VECTORS {}\n",
                               cosineBands, functions, basis_.components));
-    program_->set("products", products);
 }
 
 void TechniqueData::setTwoBands(const EnvironmentSh& light) {
@@ -190,14 +188,14 @@ void TechniqueData::setTwoBands(const EnvironmentSh& light) {
     // L = constant + gradient·ω
     const float constant = std::sqrt(1 / (4 * std::numbers::pi_v<float>)),
                 linear = std::sqrt(3 / (4 * std::numbers::pi_v<float>));
-    std::array<Vec3f, 4> expansion;
+    lightUniform_ = "light";
+    lightValues_.resize(4);
     for (size_t c = 0; c < 3; ++c) {
         const std::vector<float>& sh = light.rgb[c];
         const float values[4] = {constant * sh[0], -linear * sh[3], -linear * sh[1], linear * sh[2]};
-        for (size_t i = 0; i < 4; ++i) expansion[i][int(c)] = values[i];
+        for (size_t i = 0; i < 4; ++i) lightValues_[i][int(c)] = values[i];
     }
     chooseProgram("");
-    program_->set("light", expansion);
 }
 
 void TechniqueData::checkLight() const {
@@ -207,17 +205,20 @@ void TechniqueData::checkLight() const {
                      table ? "make one with prt tabulate" : "set an environment");
 }
 
-const GlProgram& TechniqueData::use() const {
+const GlProgram& TechniqueData::use(int samples) const {
     PRT_CHECK(program_ != nullptr);
-    program_->use();
+    const GlProgram& program = program_->of(samples);
+    program.use();
     if (usesTable(technique_)) {
-        program_->set("layers", table_.layers);
-        program_->set("tableSize", table_.size);
+        program.set("layers", table_.layers);
+        program.set("tableSize", table_.size);
         context_.gl().BindTextureUnit(5, table_.texture.name());
+    } else if (lightUniform_) {
+        program.set(lightUniform_, lightValues_);
     }
-    program_->set("gridSize", coefficients_.grid.width, coefficients_.grid.height);
+    program.set("gridSize", coefficients_.grid.width, coefficients_.grid.height);
     context_.gl().BindTextureUnit(4, coefficients_.texture.name());
-    return *program_;
+    return program;
 }
 
 }  // namespace prt

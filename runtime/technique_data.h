@@ -13,6 +13,7 @@
 #include "runtime/coefficient_images.h"
 #include "runtime/gl_context.h"
 #include "runtime/gl_objects.h"
+#include "runtime/light_program.h"
 #include "runtime/technique.h"
 
 namespace prt {
@@ -52,7 +53,8 @@ class TechniqueData {
     const PcaMap& basis() const { return basis_; }
 
     /// Uses the program, with uniforms of the technique set and its textures bound to units 4 and 5.
-    const GlProgram& use() const;
+    /// @param samples  of a pixel
+    const GlProgram& use(int samples) const;
 
   private:
     void upload(const PointGrid& grid, int perPoint, std::span<const float> values, const char* where);
@@ -65,11 +67,13 @@ class TechniqueData {
     CoefficientImage coefficients_;
     TableImage table_;
     int shOrder_ = 0, perPoint_ = 0;
-    PcaMap basis_;         // without weights
+    PcaMap basis_;  // without weights
     std::string defines_;  // of the technique
     bool perVertex_ = false;
-    std::map<std::string, GlProgram> programs_;  // by their defines
-    const GlProgram* program_ = nullptr;         // that of the light
+    std::map<std::string, LightProgram> programs_;  // by their defines
+    const LightProgram* program_ = nullptr;         // that of the light
+    const char* lightUniform_ = nullptr;            // light that is no table: its array in the program
+    std::vector<Vec3f> lightValues_;
     uint64_t lightRevision_ = 0;
 };
 

@@ -1,25 +1,10 @@
-// The environment behind the scene, orientation as in math/environment.h, bilinear.
-layout(binding = 0) uniform sampler2D environment;
-
-uniform vec3 rayCorner, rayPerPixelX, rayPerPixelY;  // direction = corner + x·X + y·Y, in pixels from the top left
-uniform float rotationRad;
+// What is behind the scene, where nothing is seen.
+#include "environment.glsl"
 
 layout(location = 0) out vec4 outRadiance;
 layout(location = 1) out vec4 outIrradiance;
 
 void main() {
-    const vec3 d = normalize(rayCorner + gl_FragCoord.x * rayPerPixelX + gl_FragCoord.y * rayPerPixelY);
-    const ivec2 size = textureSize(environment, 0);
-    const float longitude = atan(d.x, d.z) - rotationRad;
-    const float latitude = atan(d.y, length(d.xz));  // asin is good to three digits only in Mesa
-    const vec2 point = vec2(0.5 - longitude / (2.0 * kPi), 0.5 - latitude / kPi) * vec2(size) - 0.5;
-    const vec2 base = floor(point), f = point - base;
-    const int y0 = clamp(int(base.y), 0, size.y - 1), y1 = clamp(int(base.y) + 1, 0, size.y - 1);
-    const int x0 = int(mod(base.x, float(size.x))), x1 = (x0 + 1) % size.x;
-    const vec3 top = mix(texelFetch(environment, ivec2(x0, y0), 0).rgb,
-                         texelFetch(environment, ivec2(x1, y0), 0).rgb, f.x);
-    const vec3 bottom = mix(texelFetch(environment, ivec2(x0, y1), 0).rgb,
-                            texelFetch(environment, ivec2(x1, y1), 0).rgb, f.x);
-    outRadiance = vec4(mix(top, bottom, f.y), 1.0);
+    outRadiance = vec4(environmentAt(gl_FragCoord.xy), 1.0);
     outIrradiance = vec4(0.0);
 }

@@ -2,6 +2,13 @@
 
 const float kPi = 3.14159265358979;
 
+// Where attributes are taken: at the pixel's centre, or, of several samples, where the triangle is.
+#ifdef MULTISAMPLED
+#define PLACED centroid
+#else
+#define PLACED
+#endif
+
 /// Face (OpenGL order) and point in [-1, 1]² that a direction falls on; the layout of math/sphere_map.h.
 int cubeFace(vec3 direction, out vec2 point) {
     const vec3 size = abs(direction);

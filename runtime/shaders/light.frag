@@ -7,10 +7,19 @@
 //   BASE_PASS          E_c = 1: what a frame costs without its light
 //   POINT_COLOURS      no light: the first three values of the point as they are
 // [IwanickiSloan2012, Sec. 3 to 5]
-layout(binding = 0) uniform sampler2D places;
-layout(binding = 1) uniform sampler2D normals;
-layout(binding = 2) uniform sampler2D albedos;
-layout(binding = 3) uniform usampler2D triangles;
+#ifdef MULTISAMPLED
+#include "environment.glsl"
+#include "tone_curve.glsl"
+#define SURFACES sampler2DMS
+#define TRIANGLES usampler2DMS
+#else
+#define SURFACES sampler2D
+#define TRIANGLES usampler2D
+#endif
+layout(binding = 0) uniform SURFACES places;
+layout(binding = 1) uniform SURFACES normals;
+layout(binding = 2) uniform SURFACES albedos;
+layout(binding = 3) uniform TRIANGLES triangles;
 layout(binding = 4) uniform sampler2DArray coefficients;  // [layers], four coefficients each
 layout(binding = 5) uniform sampler2DArray table;         // [3·layers (+ 1)] images of the layout
 layout(binding = 6) uniform usamplerBuffer indices;
@@ -68,8 +77,8 @@ ivec2 gridPoint(uint index) {
     return ivec2(vertex % gridSize.x, vertex / gridSize.x);
 }
 
-Points pointsAt(ivec2 pixel, vec4 place) {
-    const uint first = texelFetch(triangles, pixel, 0).r * 3u;
+Points pointsAt(uint triangle, vec4 place) {
+    const uint first = triangle * 3u;
     // Pixels whose centre lies a little outside of the triangle must not extrapolate.
     vec3 b = max(vec3(1.0 - place.x - place.y, place.xy), 0.0);
 #ifdef NEAREST_POINT
@@ -86,7 +95,7 @@ vec4 valuesAt(sampler2DArray image, Points points, int layer) {
 #else
 #define Points vec2
 
-Points pointsAt(ivec2 pixel, vec4 place) { return place.zw; }
+Points pointsAt(uint triangle, vec4 place) { return place.zw; }
 
 vec4 valuesAt(sampler2DArray image, Points point, int layer) { return textureLod(image, vec3(point, layer), 0.0); }
 #endif
@@ -188,16 +197,57 @@ vec3 irradianceAt(Points points, vec3 n) {
 }
 #endif
 
+/// Irradiance of what one sample of a pixel sees, and the radiance that it sends.
+vec3 irradianceOf(ivec2 pixel, int index, uint triangle, out vec3 radiance) {
+    const Points points = pointsAt(triangle, texelFetch(places, pixel, index));
+    const vec3 normal = texelFetch(normals, pixel, index).xyz;
+    const vec3 irradiance = sunlight(points, normal) + irradianceAt(points, normal);
+#ifdef POINT_COLOURS
+    radiance = irradiance;
+#else
+    // Measured as it is; shown without the negative lobes that truncation leaves in the dark.
+    radiance = texelFetch(albedos, pixel, index).rgb / kPi * irradiance;
+#endif
+    return irradiance;
+}
+
+#ifdef MULTISAMPLED
+const int kSamples = 4;
+const uint kNoTriangle = 0xffffffffu;
+uniform int environments;  // 0 or 1
+uniform int toneCurve;  // less than 0: linear, unexposed
+uniform float exposure;
+
+vec3 shown(vec3 radiance) { return toneCurve < 0 ? radiance : toneMapped(exposure * radiance, toneCurve); }
+
+/// Each triangle is lit once; samples are averaged as they are shown, so that an edge before a bright sky is
+/// as smooth as any other. Loops in place of ifs: llvmpipe leaves loops that no pixel is in, and goes through
+/// every if.
 void main() {
     const ivec2 pixel = ivec2(gl_FragCoord.xy);
-    const Points points = pointsAt(pixel, texelFetch(places, pixel, 0));
-    const vec3 normal = texelFetch(normals, pixel, 0).xyz;
-    const vec3 irradiance = sunlight(points, normal) + irradianceAt(points, normal);
-    // Measured as it is; shown without the negative lobes that truncation leaves in the dark.
-    outIrradiance = vec4(irradiance, 1.0);
-#ifdef POINT_COLOURS
-    outRadiance = outIrradiance;
-#else
-    outRadiance = vec4(texelFetch(albedos, pixel, 0).rgb / kPi * irradiance, 1.0);
-#endif
+    uvec4 seen;
+    for (int i = 0; i < kSamples; ++i) seen[i] = texelFetch(triangles, pixel, i).r;
+    bvec4 done = equal(seen, uvec4(kNoTriangle));
+    const float none = dot(vec4(done), vec4(1.0));
+    vec3 radiances = vec3(0.0), irradiances = vec3(0.0);
+    while (!all(done)) {
+        const int i = !done.x ? 0 : !done.y ? 1 : !done.z ? 2 : 3;
+        const bvec4 same = equal(seen, uvec4(seen[i]));
+        const float count = dot(vec4(same), vec4(1.0));
+        vec3 radiance;
+        irradiances += count * irradianceOf(pixel, i, seen[i], radiance);
+        radiances += count * shown(radiance);
+        done = bvec4(done.x || same.x, done.y || same.y, done.z || same.z, done.w || same.w);
+    }
+    for (int k = 0; k < environments && none > 0.0; ++k) radiances += none * shown(environmentAt(gl_FragCoord.xy));
+    outIrradiance = vec4(irradiances / max(float(kSamples) - none, 1.0), 1.0);
+    outRadiance = vec4(radiances / float(kSamples), 1.0);
 }
+#else
+void main() {
+    const ivec2 pixel = ivec2(gl_FragCoord.xy);
+    vec3 radiance;
+    outIrradiance = vec4(irradianceOf(pixel, 0, texelFetch(triangles, pixel, 0).r, radiance), 1.0);
+    outRadiance = vec4(radiance, 1.0);
+}
+#endif

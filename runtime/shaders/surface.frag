@@ -1,4 +1,5 @@
-// What is seen, before any light: place on the triangle, shading normal, albedo.
+// What is seen, before any light: place on the triangle, shading normal, albedo. Drawn once for each triangle of
+// a pixel; of several samples to a pixel, all that are covered get it, and its place is within the triangle.
 layout(binding = 6) uniform sampler2D baseColorMap;
 layout(binding = 7) uniform sampler2D normalMap;
 
@@ -6,9 +7,9 @@ uniform vec3 baseColor;
 uniform float normalScale;
 uniform int useNormalMap;
 
-in vec3 normal;
-in vec4 tangent;
-in vec2 uv0, uv1, barycentric;
+PLACED in vec3 normal;
+PLACED in vec4 tangent;
+PLACED in vec2 uv0, uv1, barycentric;
 flat in uint triangle;
 
 layout(location = 0) out vec4 outPlace;  // barycentric coordinates of corners 1 and 2, uv1

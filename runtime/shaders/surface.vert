@@ -10,9 +10,9 @@ uniform vec3 eye;
 uniform mat4 clipFromEyeOffset;  // of world positions less the eye, which keeps digits far from the origin
 uniform int hasTangents, hasUv0, hasUv1;
 
-out vec3 normal;
-out vec4 tangent;
-out vec2 uv0, uv1, barycentric;
+PLACED out vec3 normal;
+PLACED out vec4 tangent;
+PLACED out vec2 uv0, uv1, barycentric;
 flat out uint triangle;
 
 void main() {

@@ -64,7 +64,7 @@ TEST(GlFunctions, MissingFunctionIsNamed) {
 
 TEST(Shaders, AllAreCarriedAndCompile) {
     GlContext context;
-    EXPECT_EQ(shaderSources().size(), 8u);
+    EXPECT_EQ(shaderSources().size(), 9u);
     for (const std::string defines : {"", "#define PER_VERTEX\n", "#define WITH_MEAN\n"})
         EXPECT_NO_THROW(GlProgram(context.gl(), "screen.vert", "light.frag", defines)) << defines;
     EXPECT_NO_THROW(GlProgram(context.gl(), "surface.vert", "surface.frag", ""));

@@ -1,0 +1,110 @@
+// Sources: deferred shading [SaitoTakahashi1990]: one pass finds what is seen, the second lights it. Of
+// several samples to a pixel each triangle is lit once, and the samples are averaged as a display shows them.
+#include "runtime/frame_drawer.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <utility>
+
+#include "precompute/base/check.h"
+
+namespace prt {
+
+FrameDrawer::FrameDrawer(const GlContext& context, const Scene& scene)
+    : context_(context),
+      gl_(context.gl()),
+      scene_(context, scene),
+      bounds_(sceneBounds(scene)),
+      backgroundProgram_(gl_, "screen.vert", "background.frag", ""),
+      vertexArray_(makeVertexArray(gl_)) {}
+
+void FrameDrawer::setSuns(std::vector<SunLight> suns, CoefficientImage shadows) {
+    suns_ = std::move(suns);
+    sunShadows_ = std::move(shadows);
+}
+
+void FrameDrawer::setBackground(const FloatImage& latLong, double rotationRad) {
+    checkImageSize(gl_, "background", latLong.width, latLong.height, "scale it down");
+    background_ = makeImage(gl_, GL_RGBA32F, latLong.width, latLong.height);
+    gl_.TextureSubImage2D(background_.name(), 0, 0, 0, latLong.width, latLong.height, GL_RGB, GL_FLOAT,
+                          latLong.pixels.data());
+    backgroundRotationRad_ = float(rotationRad);
+    context_.check("uploading the background");
+}
+
+CameraFrame FrameDrawer::begin(const Camera& camera, const RenderOptions& options) {
+    const int width = options.width, height = options.height;
+    checkImageSize(gl_, "image", width, height, "choose another size");
+    PRT_CHECK(options.samples == 1 || options.samples == 4);
+    const CameraFrame frame = makeCameraFrame(camera, width, height, bounds_);
+    targets_ = nullptr;
+    for (auto* targets : {&single_, &several_})
+        if (*targets && ((*targets)->width != width || (*targets)->height != height)) targets->reset();
+    std::unique_ptr<FrameTargets>& wanted = options.samples == 1 ? single_ : several_;
+    if (!wanted) wanted = std::make_unique<FrameTargets>(context_, width, height, options.samples);
+    targets_ = wanted.get();
+    return frame;
+}
+
+void FrameDrawer::drawSurface(const CameraFrame& camera, bool normalMap) {
+    const GLuint frame = targets_->surfaceFrame.name();
+    const GLuint nothing[4] = {kNoTriangle, 0, 0, 0};
+    const GLfloat farthest = 0;
+    gl_.BindFramebuffer(GL_DRAW_FRAMEBUFFER, frame);
+    gl_.Viewport(0, 0, targets_->width, targets_->height);
+    gl_.ClipControl(GL_UPPER_LEFT, GL_ZERO_TO_ONE);
+    gl_.Enable(GL_DEPTH_TEST);
+    gl_.DepthMask(GL_TRUE);
+    gl_.ClearNamedFramebufferuiv(frame, GL_COLOR, 3, nothing);
+    gl_.ClearNamedFramebufferfv(frame, GL_DEPTH, 0, &farthest);
+    gl_.DepthFunc(GL_GREATER);
+    scene_.draw(camera, normalMap, targets_->samples);
+}
+
+void FrameDrawer::setEnvironment(const GlProgram& program, const CameraFrame& camera) const {
+    program.set("rayCorner", Vec3f(camera.rayCorner.cast<float>()));
+    program.set("rayPerPixelX", Vec3f(camera.rayPerPixelX.cast<float>()));
+    program.set("rayPerPixelY", Vec3f(camera.rayPerPixelY.cast<float>()));
+    program.set("rotationRad", backgroundRotationRad_);
+    gl_.BindTextureUnit(8, background_.name());
+}
+
+void FrameDrawer::drawLight(const CameraFrame& camera, const GlProgram& program, const LightPass& pass) {
+    const bool several = targets_->samples > 1, behind = pass.background && background_;
+    const GLuint frame = targets_->lightFrame.name();
+    const GLfloat black[4] = {};
+    gl_.BindFramebuffer(GL_DRAW_FRAMEBUFFER, frame);
+    gl_.DepthMask(GL_FALSE);
+    gl_.BindVertexArray(vertexArray_.name());
+    if (several) {
+        gl_.Disable(GL_DEPTH_TEST);
+        program.set("toneCurve", pass.shown ? int(pass.shown->toneCurve) : -1);
+        program.set("exposure", pass.shown ? float(std::exp2(pass.shown->exposureStops)) : 1.0f);
+        program.set("environments", int(behind));
+        if (behind) setEnvironment(program, camera);
+    } else {
+        gl_.ClearNamedFramebufferfv(frame, GL_COLOR, 0, black);
+        gl_.ClearNamedFramebufferfv(frame, GL_COLOR, 1, black);
+        gl_.DepthFunc(GL_LESS);  // than that of nothing, at which the screen's triangle lies
+    }
+    const size_t sunCount = pass.suns ? suns_.size() : 0;
+    program.set("sunCount", int(sunCount));
+    for (size_t i = 0; i < sunCount; ++i) {
+        program.set(fmt::format("sunDirection[{}]", i).c_str(), suns_[i].direction);
+        program.set(fmt::format("sunIrradiance[{}]", i).c_str(), suns_[i].irradiance);
+    }
+    const std::pair<GLuint, GLuint> images[] = {
+        {0, targets_->place.name()},    {1, targets_->normal.name()}, {2, targets_->albedo.name()},
+        {3, targets_->triangle.name()}, {6, scene_.indices()},        {7, sunShadows_.texture.name()}};
+    for (const auto& [unit, image] : images)
+        if (image != 0) gl_.BindTextureUnit(unit, image);
+    gl_.DrawArrays(GL_TRIANGLES, 0, 3);
+    if (several || !behind) return;
+    gl_.DepthFunc(GL_EQUAL);
+    backgroundProgram_.use();
+    setEnvironment(backgroundProgram_, camera);
+    gl_.DrawArrays(GL_TRIANGLES, 0, 3);
+}
+
+}  // namespace prt

@@ -1,0 +1,65 @@
+// Draws what a camera sees of a scene: first the surface, then its light. Internal.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "runtime/camera_frame.h"
+#include "runtime/coefficient_images.h"
+#include "runtime/display_pass.h"
+#include "runtime/frame_targets.h"
+#include "runtime/gl_context.h"
+#include "runtime/gl_objects.h"
+#include "runtime/renderer.h"
+#include "runtime/scene_images.h"
+
+namespace prt {
+
+/// The second pass of a frame.
+struct LightPass {
+    bool suns = true;
+    bool background = true;
+    /// Of several samples to a pixel: how they are shown before they are averaged; none: they are linear.
+    const DisplayOptions* shown = nullptr;
+};
+
+/// Needs the context to be current. The order of a frame is begin, drawSurface, drawLight.
+class FrameDrawer {
+  public:
+    /// @param context      outlives this object
+    /// @throws InputError  as SceneImages
+    FrameDrawer(const GlContext& context, const Scene& scene);
+
+    /// Lights besides a program's own, without their shadows, and the image of these.
+    void setSuns(std::vector<SunLight> suns, CoefficientImage shadows);
+    /// @throws InputError  larger than OpenGL takes
+    void setBackground(const FloatImage& latLong, double rotationRad);
+
+    /// Readies images of a size.
+    /// @throws InputError  a size or a camera that cannot be; more samples than OpenGL takes
+    CameraFrame begin(const Camera& camera, const RenderOptions& options);
+    /// The images of the last begin().
+    const FrameTargets& targets() const { return *targets_; }
+    void drawSurface(const CameraFrame& camera, bool normalMap);
+    /// @param program  light.frag for the targets' samples, in use, with its own uniforms and textures set
+    void drawLight(const CameraFrame& camera, const GlProgram& program, const LightPass& pass);
+
+  private:
+    void setEnvironment(const GlProgram& program, const CameraFrame& camera) const;
+
+    const GlContext& context_;
+    const GlFunctions& gl_;
+    SceneImages scene_;
+    Bounds bounds_;
+    std::vector<SunLight> suns_;
+    CoefficientImage sunShadows_;
+    GlObject background_;
+    float backgroundRotationRad_ = 0;
+    GlProgram backgroundProgram_;
+    GlObject vertexArray_;
+    std::unique_ptr<FrameTargets> single_, several_;
+    FrameTargets* targets_ = nullptr;  // one of these
+};
+
+}  // namespace prt
