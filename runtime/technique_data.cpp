@@ -152,7 +152,8 @@ void TechniqueData::setTable(const NormalTable& table) {
                                      table.shOrder, table.layers, shOrder_, layers),
                          "make it anew with prt tabulate");
     uploadTable(context_, table, table_);
-    chooseProgram(layoutDefine(table.layout));
+    chooseProgram(fmt::format("{}#define TABLE_LAYERS {}\n#define TABLE_SIZE {}\n",
+                              layoutDefine(table.layout), table_.layers, table_.size));
     ++lightRevision_;
 }
 
@@ -210,8 +211,6 @@ const GlProgram& TechniqueData::use(int samples) const {
     const GlProgram& program = program_->of(samples);
     program.use();
     if (usesTable(technique_)) {
-        program.set("layers", table_.layers);
-        program.set("tableSize", table_.size);
         context_.gl().BindTextureUnit(5, table_.texture.name());
     } else if (lightUniform_) {
         program.set(lightUniform_, lightValues_);
