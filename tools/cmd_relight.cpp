@@ -3,62 +3,26 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
-#include <string_view>
 #include <utility>
 
-#include "precompute/base/atomic_file.h"
 #include "precompute/base/error.h"
 #include "precompute/base/log.h"
 #include "precompute/io/environment_file.h"
 #include "runtime/reference/reference.h"
-#include "runtime/renderer.h"
 #include "tools/background.h"
 #include "tools/command_line.h"
 #include "tools/commands.h"
 #include "tools/comparison.h"
 #include "tools/exposure.h"
+#include "tools/measure/picture.h"
 #include "tools/relight_arguments.h"
-#include "tools/relight_suns.h"
-#include "tools/relight_techniques.h"
+#include "tools/relight_images.h"
+#include "tools/relight_scene.h"
+#include "tools/relight_sequence.h"
 #include "tools/report.h"
 
 namespace prt::tools {
 namespace {
-
-std::string fileFor(const std::string& pattern, const std::string& environment,
-                    const std::string& technique) {
-    std::string name = pattern;
-    for (const auto& [word, value] : {std::pair{"{env}", environment}, std::pair{"{technique}", technique}}) {
-        const size_t at = name.find(word);
-        if (at != std::string::npos) name.replace(at, std::string_view(word).size(), value);
-    }
-    return name;
-}
-
-void writeImage(const std::string& file, const FloatImage& image, double exposureStops) {
-    if (file.empty()) return;
-    if (file.ends_with(".exr")) {
-        writeExrImage(file, image);
-    } else {
-        const std::vector<uint8_t> png = encodePng(toDisplay(image, exposureStops));
-        writeFileAtomically(file, std::as_bytes(std::span(png)));
-    }
-    logNote("wrote " + file);
-}
-
-/// albedo/π · E, over the background.
-FloatImage radianceFromIrradiance(const std::vector<float>& irradiance, const SurfaceImage& surface) {
-    FloatImage image{surface.width, surface.height, 3, {}};
-    image.pixels.assign(surface.pixels() * 3, 0.0f);
-    for (size_t p = 0; p < surface.pixels(); ++p) {
-        if (surface.triangle[p] == kNoTriangle) continue;
-        for (size_t c = 0; c < 3; ++c)
-            image.pixels[3 * p + c] =
-                surface.albedo[p][int(c)] * irradiance[3 * p + c] / std::numbers::pi_v<float>;
-    }
-    return image;
-}
 
 /// One relit picture, or one per environment: everything that has been traced and loaded, ready to light.
 class Relight {
@@ -67,19 +31,13 @@ class Relight {
     Relight(const RelightArguments& arguments, bool printText)
         : arguments_(arguments),
           printText_(printText),
-          data_(loadRelightData(arguments)),
-          techniques_(arguments_, data_),
-          suns_(data_.bundle, data_.scene, data_.environments),
-          camera_(arguments.camera(sceneBounds(data_.scene))),
-          options_{arguments.width, arguments.height, !arguments.noNormalMap},
-          context_(arguments.context.kind()),
-          renderer_(context_, data_.scene, nullptr, nullptr) {
-        techniques_.addTo(renderer_);
-    }
+          scene_(arguments),
+          data_(scene_.data()),
+          camera_(arguments.camera(scene_.bounds())) {}
 
     Report run() {
         const bool reference = arguments_.compareReference || arguments_.reference;
-        surface_ = renderer_.surface(camera_, options_);
+        surface_ = scene_.renderer().surface(camera_, scene_.options());
         covered_ = size_t(std::count_if(surface_.triangle.begin(), surface_.triangle.end(),
                                         [](uint32_t t) { return t != kNoTriangle; }));
         if (covered_ == 0)
@@ -89,12 +47,12 @@ class Relight {
         Report report;
         report.set("bundle", arguments_.bundlePath)
             .set("technique", fmt::format("{}", fmt::join(arguments_.techniqueNames, ",")))
-            .set("width", options_.width)
-            .set("height", options_.height)
+            .set("width", arguments_.width)
+            .set("height", arguments_.height)
             .set("covered_pixels", uint64_t(covered_))
             .set("rotate_deg", arguments_.rotateDeg)
-            .set("context", glContextKindName(context_.kind()))
-            .set("renderer", context_.rendererName());
+            .set("context", glContextKindName(scene_.context().kind()))
+            .set("renderer", scene_.context().rendererName());
         if (reference)
             report.set("reference_directions", uint64_t(directions_.direction.size()))
                 .set("bounces", arguments_.bounces);
@@ -160,28 +118,22 @@ class Relight {
 
     /// Draws, compares and writes under one choice of weights.
     void light(const std::vector<double>& weights, const std::string& name, Report& report) {
-        const bool needBackground = !arguments_.noBackground && !arguments_.output.empty();
-        const FloatImage background =
-            needBackground ? blendImages(data_.environments, weights) : FloatImage{};
-        if (needBackground) renderer_.setBackground(background, arguments_.rotationRad());
-
+        const size_t suns = scene_.setLight({weights, arguments_.rotationRad()});
         std::vector<float> truth;
         if (!truth_.empty()) truth = blend(truth_, weights);
         FloatImage referenceImage;
         if (!truth.empty()) {
-            referenceImage = radianceFromIrradiance(truth, surface_);
-            if (needBackground)
-                paintBackground(referenceImage, surface_, camera_, sceneBounds(data_.scene), background,
+            referenceImage = radianceOf(truth, surface_);
+            if (!scene_.background().pixels.empty())
+                paintBackground(referenceImage, surface_, camera_, scene_.bounds(), scene_.background(),
                                 arguments_.rotationRad());
         }
-        if (arguments_.tables.extractSun && !data_.techniques.empty()) {
-            report.set("suns", uint64_t(suns_.setTo(renderer_, weights, arguments_.rotationRad())));
-        }
+        if (arguments_.tables.extractSun && !data_.techniques.empty()) report.set("suns", uint64_t(suns));
         if (arguments_.reference) writeImages(referenceImage, referenceImage, name, "reference");
 
         std::vector<Report> rows;
         for (const Technique technique : data_.techniques)
-            draw(technique, weights, truth, referenceImage, name, report, rows);
+            draw(technique, truth, referenceImage, name, report, rows);
         if (arguments_.compareReference) {
             const IrradianceError error = compareIrradiance(blend(floor_, weights), truth, surface_);
             report.set("floor_rmse", error.relativeRmse).set("rows", rows);
@@ -195,18 +147,17 @@ class Relight {
     }
 
     /// One technique: its picture where it was asked for, its error where there is truth.
-    void draw(Technique technique, const std::vector<double>& weights, const std::vector<float>& truth,
-              const FloatImage& referenceImage, const std::string& environment, Report& report,
-              std::vector<Report>& rows) {
+    void draw(Technique technique, const std::vector<float>& truth, const FloatImage& referenceImage,
+              const std::string& environment, Report& report, std::vector<Report>& rows) {
         const std::string name = techniqueName(technique);
-        const char* origin = techniques_.setLight(renderer_, technique, weights, arguments_.rotationRad());
-        const RenderedFrame frame = renderer_.render(camera_, techniques_.drawn(technique), options_);
+        const char* origin = nullptr;
+        const RenderedFrame frame = scene_.render(technique, camera_, &origin);
         if (arguments_.isAsked(technique)) {
             if (technique == firstAsked()) report.set("tables", origin);
             writeImages(frame.radiance, referenceImage, environment, name);
         }
         if (!arguments_.compareReference) return;
-        const int bounces = techniques_.bounces(technique);
+        const int bounces = scene_.techniques().bounces(technique);
         if (bounces != arguments_.bounces && bounces > 0)
             logWarning(fmt::format("{} holds {} bounces, the reference {}; compare with --bounces {}", name,
                                    bounces, arguments_.bounces, bounces));
@@ -235,28 +186,26 @@ class Relight {
         const double exposure = arguments_.exposureStops
                                     ? *arguments_.exposureStops
                                     : autoExposure(reference.pixels.empty() ? image : reference, surface_);
-        writeImage(fileFor(arguments_.output, environment, technique), image, exposure);
-        writeImage(fileFor(arguments_.referenceOutput, environment, technique), reference, exposure);
-        if (arguments_.differenceOutput.empty()) return;
-        FloatImage difference = image;
-        for (size_t p = 0; p < surface_.pixels(); ++p)
-            for (size_t c = 3 * p; c < 3 * p + 3; ++c)
-                difference.pixels[c] = surface_.triangle[p] == kNoTriangle
-                                           ? 0.0f
-                                           : 4 * std::abs(image.pixels[c] - reference.pixels[c]);
-        writeImage(fileFor(arguments_.differenceOutput, environment, technique), difference, exposure);
+        const auto write = [&](const std::string& pattern, const FloatImage& picture) {
+            const std::string file = fileNamed(pattern, {{"{env}", environment}, {"{technique}", technique}});
+            writeImage(file, picture, exposure, arguments_);
+            if (!file.empty()) logNote("wrote " + file);
+        };
+        write(arguments_.output, image);
+        write(arguments_.referenceOutput, reference);
+        if (!arguments_.differenceOutput.empty())
+            write(arguments_.differenceOutput, scaledDifference(image, reference, surface_));
     }
 
     void timeFrames(Report& report) {
         if (arguments_.timeFrames == 0) return;
-        if (arguments_.tables.extractSun && !data_.techniques.empty())
-            suns_.setTo(renderer_, data_.weights, arguments_.rotationRad());
+        scene_.setLight({data_.weights, arguments_.rotationRad()});
         std::vector<Report> rows;
         for (const Technique technique : data_.techniques) {
             if (!arguments_.isAsked(technique)) continue;
-            techniques_.setLight(renderer_, technique, data_.weights, arguments_.rotationRad());
-            const double ms = renderer_.frameMilliseconds(camera_, techniques_.drawn(technique), options_,
-                                                          arguments_.timeFrames);
+            scene_.render(technique, camera_);
+            const double ms = scene_.renderer().frameMilliseconds(
+                camera_, scene_.techniques().drawn(technique), scene_.options(), arguments_.timeFrames);
             if (rows.empty()) report.set("frame_ms", ms);
             Report row;
             row.set("technique", techniqueName(technique)).set("frame_ms", ms);
@@ -268,13 +217,9 @@ class Relight {
 
     const RelightArguments& arguments_;
     const bool printText_;
-    RelightData data_;
-    RelightTechniques techniques_;
-    RelightSuns suns_;
+    RelightScene scene_;
+    const RelightData& data_;
     Camera camera_;
-    RenderOptions options_;
-    GlContext context_;
-    Renderer renderer_;
     SurfaceImage surface_;
     size_t covered_ = 0;
     ReferenceDirections directions_;
@@ -294,12 +239,17 @@ void runRelightCommand(int argc, char** argv) {
             "Examples:\n"
             "  prt relight out/house.prt --env sunset.exr:0.7 --env night.exr:0.3 --rotate 40 "
             "--technique pca -o frame.png\n"
+            "  prt relight out/house.prt --env sky:sunset --env sky:clear --transition 1:2:100 --turntable "
+            "100 "
+            "-o film.mp4\n"
             "  prt relight out/house.prt --env city.exr --env forest.exr --each --compare-reference "
             "--technique all --json errors.json");
     arguments.addTo(line);
     if (!line.parse(argc, argv)) return;
     arguments.finish();
-    Relight(arguments, line.common().json != "-").run().write(line.common().json);
+    const Report report =
+        arguments.isSequence() ? runSequence(arguments) : Relight(arguments, line.common().json != "-").run();
+    report.write(line.common().json);
 }
 
 }  // namespace prt::tools

@@ -11,6 +11,7 @@
 #include "tools/command_line.h"
 #include "tools/environment_arguments.h"
 #include "tools/table_arguments.h"
+#include "tools/video.h"
 
 namespace prt::tools {
 namespace {
@@ -67,9 +68,13 @@ void RelightArguments::addTo(CommandLine& line) {
         fmt::format("repeat to draw several; {{technique}} in file names becomes the name [{}, reference "
                     "| all; default unc]",
                     listedTechniqueNames()));
-    line.text("-o,--output", output, "FILE", "image to write: .png (sRGB) or .exr (linear)");
+    line.text(
+        "-o,--output", output, "FILE",
+        "image to write: .png (sRGB) or .exr (linear); of a sequence with {frame} in its name, or a video: "
+        ".mp4, .mkv, .webm, .gif");
     line.text("--size", sizeText, "WIDTHxHEIGHT", "pixels");
     line.text("--exposure", exposureText, "STOPS|auto", "brightness of .png output");
+    line.choice("--tone", toneText, {"none", "filmic", "neutral"}, "tone curve of .png output and videos");
     line.text("--eye", eyeText, "X,Y,Z", "camera position; else it is placed by the next three");
     line.text("--target", targetText, "X,Y,Z", "point looked at; else the middle of the scene");
     line.real("--azimuth", azimuthDeg, -1e6, 1e6,
@@ -78,6 +83,13 @@ void RelightArguments::addTo(CommandLine& line) {
     line.real("--distance", distance, 0.01, 100,
               "of the camera, 1 = the scene's bounding sphere fills the picture");
     line.real("--fov", fovDeg, 1, 160, "vertical field of view, degrees");
+    line.integer("--turntable", turntableFrames, 0, 100000,
+                 "frames of a sequence: the camera goes once around its target");
+    line.text("--transition", transitionText, "A:B:FRAMES",
+              "sequence from environment A to B, named as in --env's files, or by their numbers from 1");
+    line.integer("--rotate-light", rotateLightFrames, 0, 100000,
+                 "frames of a sequence: the environments turn once about the up axis");
+    line.real("--fps", framesPerSecond, 0.1, 1000, "frames a second of a video");
     line.flag("--no-normal-map", noNormalMap, "shade with the mesh's own normals");
     line.flag("--no-background", noBackground, "black where nothing is seen");
     addTableOptions(line, "--table-", tables);
@@ -123,6 +135,49 @@ void RelightArguments::parseTechniques() {
 
 double RelightArguments::rotationRad() const { return rotateDeg * std::numbers::pi / 180; }
 
+int RelightArguments::sequenceFrames() const {
+    return std::max({turntableFrames, rotateLightFrames, transitionFrames});
+}
+
+void RelightArguments::parseSequence() {
+    if (!transitionText.empty()) {
+        const size_t colon = transitionText.rfind(':');
+        const auto frames = colon == std::string::npos
+                                ? std::nullopt
+                                : parseNumber(std::string_view(transitionText).substr(colon + 1));
+        if (!frames || *frames != std::floor(*frames) || *frames < 2 || *frames > 100000)
+            throw UsageError("--transition", fmt::format("'{}' is not A:B:FRAMES", transitionText),
+                             "for example 1:2:48; at least 2 frames");
+        transitionEnds = transitionText.substr(0, colon);
+        transitionFrames = int(*frames);
+    }
+    const int frames = sequenceFrames();
+    for (const auto& [option, own] :
+         {std::pair{"--turntable", turntableFrames}, std::pair{"--rotate-light", rotateLightFrames},
+          std::pair{"--transition", transitionFrames}})
+        if (own > 0 && own != frames)
+            throw UsageError(option, fmt::format("has {} frames, another motion {}", own, frames),
+                             "motions run at the same time: give all the same number");
+    const bool video = isVideoName(output), numbered = output.find("{frame}") != std::string::npos;
+    if (frames == 0) {
+        if (video || numbered)
+            throw UsageError("--output", fmt::format("'{}' is for several frames", output),
+                             "give --turntable, --transition or --rotate-light");
+        return;
+    }
+    if (output.empty()) throw UsageError("--output", "is missing", "for example -o frames/{frame}.png");
+    if (!video && !numbered)
+        throw UsageError("--output", fmt::format("'{}' would be written once per frame", output),
+                         "put {frame} into the name, or name a video");
+    const bool light = std::ranges::find(techniques, Technique::ShLightmap) != techniques.end();
+    if (rotateLightFrames > 0 && light)
+        throw UsageError("--rotate-light", "sh-lightmap holds light of one turn", "choose other techniques");
+    for (const auto& [option, given] :
+         {std::pair{"--each", each}, std::pair{"--compare-reference", compareReference},
+          std::pair{"--technique reference", reference}, std::pair{"--time-frames", timeFrames > 0}})
+        if (given) throw UsageError(option, "is for single pictures, not for sequences", "leave it out");
+}
+
 bool RelightArguments::isAsked(Technique technique) const {
     return allTechniques || std::ranges::find(techniques, technique) != techniques.end();
 }
@@ -139,7 +194,16 @@ void RelightArguments::finish() {
                              fmt::format("'{}' is neither a number of stops nor auto", exposureText));
     }
     checkTableOptions(tables, "--table-");
-    checkImageName("--output", output);
+    toneCurve = toneCurveFromName(toneText).value();
+    parseSequence();
+    checkOutputs();
+    float unused[3];
+    if (!eyeText.empty()) parseVector("--eye", eyeText, unused);
+    if (!targetText.empty()) parseVector("--target", targetText, unused);
+}
+
+void RelightArguments::checkOutputs() const {
+    if (!isVideoName(output)) checkImageName("--output", output);
     checkImageName("--reference-output", referenceOutput);
     checkImageName("--difference-output", differenceOutput);
     if (output.empty() && !compareReference && timeFrames == 0)
@@ -156,9 +220,6 @@ void RelightArguments::finish() {
             if (!file.empty() && file.find("{env}") == std::string::npos)
                 throw UsageError("--each", fmt::format("'{}' would be written once per environment", file),
                                  "put {env} into the name");
-    float unused[3];
-    if (!eyeText.empty()) parseVector("--eye", eyeText, unused);
-    if (!targetText.empty()) parseVector("--target", targetText, unused);
 }
 
 Camera RelightArguments::camera(const Bounds& bounds) const {

@@ -7,6 +7,7 @@
 
 #include "compress/tables/table_options.h"
 #include "precompute/io/environment_file.h"
+#include "precompute/io/image.h"
 #include "precompute/io/scene.h"
 #include "precompute/io/surface_image.h"
 #include "runtime/technique.h"
@@ -34,7 +35,9 @@ struct RelightArguments {
     std::string sizeText = "1280x800";
     std::string output, referenceOutput, differenceOutput;
     std::string exposureText = "0";
-    std::string eyeText, targetText;
+    std::string eyeText, targetText, toneText = "none", transitionText;
+    int turntableFrames = 0, rotateLightFrames = 0;  ///< 0: no such motion
+    double framesPerSecond = 25;
     double rotateDeg = 0, fovDeg = 40, azimuthDeg = 35, elevationDeg = 18, distance = 1;
     int referenceRays = 4096, bounces = 0, referencePaths = 256, timeFrames = 0;
     bool noNormalMap = false, noBackground = false, compareReference = false, each = false;
@@ -47,11 +50,17 @@ struct RelightArguments {
     TableOptions tables;
     ContextArguments context;
     int width = 0, height = 0;
+    ToneCurve toneCurve = ToneCurve::None;
+    std::string transitionEnds;           ///< "A:B" of --transition
+    int transitionFrames = 0;             ///< 0: none
     std::optional<double> exposureStops;  ///< empty: chosen from the picture
 
     void addTo(CommandLine& line);
     /// Turn of the environments, from --rotate.
     double rotationRad() const;
+    /// Whether several frames are to be drawn, and how many.
+    bool isSequence() const { return sequenceFrames() > 0; }
+    int sequenceFrames() const;
     /// Whether a picture of the technique was asked for, not only its error.
     bool isAsked(Technique technique) const;
     /// Checks and parses the texts.
@@ -62,6 +71,8 @@ struct RelightArguments {
 
   private:
     void parseTechniques();
+    void parseSequence();
+    void checkOutputs() const;
 };
 
 }  // namespace prt::tools

@@ -55,7 +55,7 @@ std::vector<Technique> inListedOrder(const std::vector<Technique>& wanted) {
 // Whoever names the technique is told what is missing; "all" has it where it is there.
 void findLightmaps(const RelightArguments& arguments, bool named, RelightData& data) {
     data.lightmaps = std::make_shared<RelightLightmaps>(data.bundle, arguments, data.environments);
-    if (!named && !arguments.allTechniques) return;
+    if (!named && (!arguments.allTechniques || arguments.rotateLightFrames > 0)) return;
     try {
         data.lightmaps->check(data.weights, arguments.rotationRad());
         data.hasLightmaps = true;

@@ -103,8 +103,9 @@ TEST_F(Pipeline, AllTechniquesAreCompared) {
     std::vector<std::string> arguments = {"relight", "box.prt", "--technique", "all", "--compare-reference"};
     arguments.insert(arguments.end(), kSideLight.begin(), kSideLight.end());
     const auto errors = errorsOf(runJson(folder_, arguments));
-    const std::vector<std::string> names = {"unc",   "unc3",  "unc4", "pca",         "pca4",           "pca8",
-                                            "pca12", "pca16", "sh2",  "pca-uniform", "preconvolved-ao"};
+    const std::vector<std::string> names = {"unc",        "unc3",        "unc4",  "pca",
+                                            "pca4",       "pca8",        "pca12", "pca16",
+                                            "vertex-pca", "pca-uniform", "sh2",   "preconvolved-ao"};
     EXPECT_EQ(errors.size(), names.size());  // neither unc6 nor pca20 of four bands
     for (const std::string& name : names) ASSERT_TRUE(errors.contains(name)) << name;
     EXPECT_EQ(errors.at("unc4"), errors.at("unc"));
