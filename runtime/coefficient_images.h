@@ -36,10 +36,16 @@ struct TableImage {
     int size = 0;
     int layers = 0;
     bool mean = false;
+    int width = 0, height = 0, images = 0;  ///< of the texture
+    GlObject frame;                         ///< over all images, when something was blended into it
 };
+bool sameShape(const TableImage& a, const TableImage& b);
 
 /// Fills an image, or makes it anew when its shape differs.
 /// @throws InputError  larger than OpenGL takes
 void uploadTable(const GlContext& context, const NormalTable& table, TableImage& image);
+/// Makes an image anew, with any values, unless it has the shape of another.
+/// @throws InputError  larger than OpenGL takes
+void shapeTable(const GlContext& context, const TableImage& like, TableImage& image);
 
 }  // namespace prt

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "precompute/base/check.h"
+#include "precompute/io/bundle.h"
 
 namespace prt {
 
@@ -19,18 +20,39 @@ FrameDrawer::FrameDrawer(const GlContext& context, const Scene& scene)
       backgroundProgram_(gl_, "screen.vert", "background.frag", ""),
       vertexArray_(makeVertexArray(gl_)) {}
 
-void FrameDrawer::setSuns(std::vector<SunLight> suns, CoefficientImage shadows) {
-    suns_ = std::move(suns);
-    sunShadows_ = std::move(shadows);
+void FrameDrawer::setSuns(std::span<const SunLight> suns, const PointGrid& grid) {
+    suns_.clear();
+    std::string hash = fmt::format("{}x{} ", grid.width, grid.height);
+    for (const SunLight& sun : suns) {
+        PRT_CHECK_EQ(sun.shadow.size(), grid.count);
+        suns_.push_back({sun.direction, sun.irradiance, {}});
+        hash += xxh3Hex(sun.shadow.data(), sun.shadow.size() * sizeof(float));
+    }
+    if (suns.empty() || hash == shadowsHash_) return;
+    std::vector<float> shadows(grid.count * suns.size());
+    for (size_t i = 0; i < suns.size(); ++i)
+        for (size_t point = 0; point < grid.count; ++point)
+            shadows[point * suns.size() + i] = suns[i].shadow[point];
+    shadowsHash_.clear();
+    sunShadows_ = uploadCoefficients(context_, grid, int(suns.size()), shadows, "shadows of suns");
+    shadowsHash_ = hash;
+    ++uploads_;
 }
 
 void FrameDrawer::setBackground(const FloatImage& latLong, double rotationRad) {
+    backgroundRotationRad_ = float(rotationRad);
+    const std::string hash =
+        fmt::format("{}x{} {}", latLong.width, latLong.height,
+                    xxh3Hex(latLong.pixels.data(), latLong.pixels.size() * sizeof(float)));
+    if (hash == backgroundHash_) return;
     checkImageSize(gl_, "background", latLong.width, latLong.height, "scale it down");
+    backgroundHash_.clear();
     background_ = makeImage(gl_, GL_RGBA32F, latLong.width, latLong.height);
     gl_.TextureSubImage2D(background_.name(), 0, 0, 0, latLong.width, latLong.height, GL_RGB, GL_FLOAT,
                           latLong.pixels.data());
-    backgroundRotationRad_ = float(rotationRad);
     context_.check("uploading the background");
+    backgroundHash_ = hash;
+    ++uploads_;
 }
 
 CameraFrame FrameDrawer::begin(const Camera& camera, const RenderOptions& options) {

@@ -1,8 +1,10 @@
 // Draws what a camera sees of a scene: first the surface, then its light. Internal.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "runtime/camera_frame.h"
@@ -31,10 +33,15 @@ class FrameDrawer {
     /// @throws InputError  as SceneImages
     FrameDrawer(const GlContext& context, const Scene& scene);
 
-    /// Lights besides a program's own, without their shadows, and the image of these.
-    void setSuns(std::vector<SunLight> suns, CoefficientImage shadows);
+    /// Lights besides a program's own, at most kMostSuns. Shadows that are there already are not sent again.
+    /// @throws InputError  larger than OpenGL takes
+    void setSuns(std::span<const SunLight> suns, const PointGrid& grid);
+    /// An image that is there already is not sent again.
     /// @throws InputError  larger than OpenGL takes
     void setBackground(const FloatImage& latLong, double rotationRad);
+
+    /// Backgrounds and shadows that were sent.
+    uint64_t uploads() const { return uploads_; }
 
     /// Readies images of a size.
     /// @throws InputError  a size or a camera that cannot be; more samples than OpenGL takes
@@ -52,9 +59,11 @@ class FrameDrawer {
     const GlFunctions& gl_;
     SceneImages scene_;
     Bounds bounds_;
-    std::vector<SunLight> suns_;
+    std::vector<SunLight> suns_;  // without their shadows
     CoefficientImage sunShadows_;
     GlObject background_;
+    std::string shadowsHash_, backgroundHash_;  // of what these hold
+    uint64_t uploads_ = 0;
     float backgroundRotationRad_ = 0;
     GlProgram backgroundProgram_;
     GlObject vertexArray_;

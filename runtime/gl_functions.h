@@ -51,6 +51,7 @@
     X(PFNGLDISABLEPROC, Disable)                                         \
     X(PFNGLDISABLEIPROC, Disablei)                                       \
     X(PFNGLDRAWARRAYSPROC, DrawArrays)                                   \
+    X(PFNGLDRAWARRAYSINSTANCEDPROC, DrawArraysInstanced)                 \
     X(PFNGLENABLEPROC, Enable)                                           \
     X(PFNGLENABLEIPROC, Enablei)                                         \
     X(PFNGLFINISHPROC, Finish)                                           \
@@ -81,6 +82,7 @@
     X(PFNGLPIXELSTOREIPROC, PixelStorei)                                 \
     X(PFNGLPOLYGONMODEPROC, PolygonMode)                                 \
     X(PFNGLPROGRAMUNIFORM1FPROC, ProgramUniform1f)                       \
+    X(PFNGLPROGRAMUNIFORM1FVPROC, ProgramUniform1fv)                     \
     X(PFNGLPROGRAMUNIFORM1IPROC, ProgramUniform1i)                       \
     X(PFNGLPROGRAMUNIFORM2IPROC, ProgramUniform2i)                       \
     X(PFNGLPROGRAMUNIFORM3FVPROC, ProgramUniform3fv)                     \

@@ -113,12 +113,16 @@ GlBufferTexture::GlBufferTexture(const GlFunctions& gl, GLenum internalFormat,
 }
 
 GlProgram::GlProgram(const GlFunctions& gl, const std::string& vertex, const std::string& fragment,
-                     const std::string& defines)
+                     const std::string& defines, const std::string& geometry)
     : gl_(&gl), program_(gl, gl.CreateProgram(), deleteProgram) {
-    const GlObject vertexShader = compileShader(gl, GL_VERTEX_SHADER, vertex, defines);
-    const GlObject fragmentShader = compileShader(gl, GL_FRAGMENT_SHADER, fragment, defines);
-    gl.AttachShader(program_.name(), vertexShader.name());
-    gl.AttachShader(program_.name(), fragmentShader.name());
+    std::vector<GlObject> shaders;
+    for (const auto& [stage, name] :
+         {std::pair(GL_VERTEX_SHADER, vertex), std::pair(GL_GEOMETRY_SHADER, geometry),
+          std::pair(GL_FRAGMENT_SHADER, fragment)}) {
+        if (name.empty()) continue;
+        shaders.push_back(compileShader(gl, GLenum(stage), name, defines));
+        gl.AttachShader(program_.name(), shaders.back().name());
+    }
     gl.LinkProgram(program_.name());
     GLint linked = 0;
     gl.GetProgramiv(program_.name(), GL_LINK_STATUS, &linked);

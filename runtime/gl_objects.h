@@ -75,11 +75,11 @@ class GlBufferTexture {
 class GlProgram {
   public:
     GlProgram() = default;
-    /// @param vertex, fragment  names in runtime/shaders
-    /// @param defines           lines put in front, e.g. "#define PER_VERTEX\n"
+    /// @param vertex, fragment, geometry  names in runtime/shaders; geometry may be empty: none
+    /// @param defines                     lines put in front, e.g. "#define PER_VERTEX\n"
     /// @throws Error  the compiler's log
     GlProgram(const GlFunctions& gl, const std::string& vertex, const std::string& fragment,
-              const std::string& defines);
+              const std::string& defines, const std::string& geometry = {});
     void use() const { gl_->UseProgram(program_.name()); }
     void set(const char* uniform, int value) const {
         gl_->ProgramUniform1i(program_.name(), at(uniform), value);
@@ -89,6 +89,10 @@ class GlProgram {
     }
     void set(const char* uniform, float value) const {
         gl_->ProgramUniform1f(program_.name(), at(uniform), value);
+    }
+    /// An array of numbers, from its first on.
+    void set(const char* uniform, std::span<const float> values) const {
+        gl_->ProgramUniform1fv(program_.name(), at(uniform), GLsizei(values.size()), values.data());
     }
     void set(const char* uniform, const Vec3f& value) const {
         gl_->ProgramUniform3fv(program_.name(), at(uniform), 1, value.data());

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <atomic>
 #include <cmath>
 #include <numbers>
 
@@ -14,6 +15,8 @@ namespace prt {
 
 LiveLight::LiveLight(const std::vector<Environment>& environments, int shOrder, const TableOptions& options)
     : shOrder_(shOrder), options_(options) {
+    static std::atomic<uint64_t> last{0};
+    id_ = ++last;
     PRT_CHECK(!environments.empty());
     for (const Environment& environment : environments) {
         TableLight light = projectTableLight(environment.view(), shOrder, options);

@@ -2,6 +2,7 @@
 // technique.
 #pragma once
 
+#include <cstdint>
 #include <map>
 #include <string>
 #include <utility>
@@ -38,6 +39,9 @@ class LiveLight {
     /// @source [IwanickiSloan2012, Sec. 5]
     NormalTable preconvolvedTable(const std::vector<double>& weights, double rotationRad) const;
 
+    /// Different for lights that were made by different constructors; copies are equal.
+    uint64_t id() const { return id_; }
+    size_t environmentCount() const { return environments_.size(); }
     int cosineBands() const { return options_.cosineBands(); }  ///< of the tables
     /// What was taken out of each environment; not found unless the options ask for it.
     const std::vector<ExtractedSun>& suns() const { return suns_; }
@@ -52,6 +56,7 @@ class LiveLight {
     std::vector<std::string> names_, hashes_;
     int shOrder_;
     TableOptions options_;
+    uint64_t id_;
     /// By order of the visibility and bands of the cosine, made when first asked for; only scratch changes.
     mutable std::map<std::pair<int, int>, LightTableBuilder> builders_;
 };

@@ -20,6 +20,7 @@
 #include "runtime/gl_state.h"
 #include "runtime/light_program.h"
 #include "runtime/technique_data.h"
+#include "runtime/technique_lights.h"
 
 namespace prt {
 namespace {
@@ -60,7 +61,11 @@ Vec3f fromRgba(const float* rgba) { return {rgba[0], rgba[1], rgba[2]}; }
 
 struct Renderer::State {
     State(GlContext& glContext, const Scene& source)
-        : context(glContext), gl(glContext.gl()), frame(glContext, source), display(glContext) {
+        : context(glContext),
+          gl(glContext.gl()),
+          frame(glContext, source),
+          lights(glContext),
+          display(glContext) {
         geometry.positions = source.positions;
         geometry.indices = source.indices;
         hasAtlas = !source.uv1.empty();
@@ -82,6 +87,8 @@ struct Renderer::State {
     Scene geometry;  // positions and indices, for surface()
     bool hasAtlas = false;
     std::map<Technique, TechniqueData> techniques;
+    TechniqueLights lights;
+    uint64_t tables = 0;  // that were given as such
     std::optional<LightProgram> baseProgram;
     std::optional<PointColours> points;
     DisplayPass display;
@@ -160,6 +167,7 @@ void Renderer::State::add(Technique technique, const Map& map, int number, int h
         throw InputError(techniqueName(technique), fmt::format("was given {} in place of {}", has, number),
                          "reduce it to them");
     techniques.erase(technique);
+    lights.forget(technique);
     techniques.emplace(std::piecewise_construct, std::forward_as_tuple(technique),
                        std::forward_as_tuple(context, technique, map));
 }
@@ -199,25 +207,20 @@ void Renderer::setTable(Technique technique, const NormalTable& table) {
         throw InputError(techniqueName(technique),
                          fmt::format("a {} table was given, but {}", tableKindName(table.kind),
                                      readsVisibility(technique) ? "no visibility" : "no PCA weights"));
+    s.lights.forget(technique);
     s.dataOf(technique).setTable(table);
+    ++s.tables;
 }
 
 void Renderer::setLight(Technique technique, const LiveLight& light, const std::vector<double>& weights,
-                        double rotationRad) {
+                        double rotationRad, BlendOn blendOn) {
     State& s = *state_;
     const GlStateGuard guard(s.context);
-    TechniqueData& data = s.dataOf(technique);
-    if (technique.kind == TechniqueKind::Unc)
-        data.setTable(light.lightCosineTable(weights, rotationRad, data.shOrder()));
-    else if (technique.kind == TechniqueKind::Pca || technique.kind == TechniqueKind::VertexPca)
-        data.setTable(light.tripleProductTable(weights, rotationRad, data.basis()));
-    else if (technique.kind == TechniqueKind::PreconvolvedAo)
-        data.setTable(light.preconvolvedTable(weights, rotationRad));
-    else if (technique.kind == TechniqueKind::ShLightmap)
-        throw InputError(techniqueName(technique), "its light is in its data",
-                         "add the lightmap of another light");
-    else
-        data.setLight(light.blend(weights, rotationRad), light.cosineBands());
+    s.lights.set(technique, s.dataOf(technique), light, weights, rotationRad, blendOn);
+}
+
+uint64_t Renderer::uploads() const {
+    return state_->lights.tableUploads() + state_->tables + state_->frame.uploads();
 }
 
 uint64_t Renderer::lightRevision(Technique technique) const {
@@ -230,20 +233,7 @@ void Renderer::setSuns(std::span<const SunLight> suns, const PointGrid& grid) {
     if (suns.size() > size_t(kMostSuns))
         throw InputError(
             "suns", fmt::format("{} are more than the {} that are drawn at a time", suns.size(), kMostSuns));
-    if (suns.empty()) {
-        s.frame.setSuns({}, {});
-        return;
-    }
-    std::vector<SunLight> lights;
-    std::vector<float> shadows(grid.count * suns.size());
-    for (size_t i = 0; i < suns.size(); ++i) {
-        PRT_CHECK_EQ(suns[i].shadow.size(), grid.count);
-        for (size_t point = 0; point < grid.count; ++point)
-            shadows[point * suns.size() + i] = suns[i].shadow[point];
-        lights.push_back({suns[i].direction, suns[i].irradiance, {}});
-    }
-    s.frame.setSuns(std::move(lights),
-                    uploadCoefficients(s.context, grid, int(suns.size()), shadows, "shadows of suns"));
+    s.frame.setSuns(suns, grid);
 }
 
 void Renderer::setBackground(const FloatImage& latLong, double rotationRad) {

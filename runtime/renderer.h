@@ -56,6 +56,12 @@ struct SunLight {
 /// Suns that a renderer draws at a time.
 inline constexpr int kMostSuns = 8;
 
+/// Where tables of blended environments are made.
+enum class BlendOn {
+    Cpu,  ///< environments are blended, then their table is built and uploaded
+    Gpu   ///< each environment has a table of its own on the GPU; other weights cost one pass over them
+};
+
 class Renderer {
   public:
     /// Uploads geometry and textures, and adds Unc and Pca where visibility and PCA weights are given.
@@ -83,8 +89,10 @@ class Renderer {
     /// Light of any technique that was added: its table, or what it has in place of one.
     /// @param light  of the bands of the visibility that maps were made from, or more
     /// @throws InputError  the technique was not added, or is ShLightmap; more uniforms than OpenGL takes
+    /// Nothing is done where the technique has this light, of these weights and rotation, already.
+    /// @param blendOn  techniques with uniforms in place of a table are blended on the CPU always
     void setLight(Technique technique, const LiveLight& light, const std::vector<double>& weights,
-                  double rotationRad);
+                  double rotationRad, BlendOn blendOn = BlendOn::Cpu);
     /// How often the technique was given a table or light: the same number, the same light.
     /// @throws InputError  the technique was not added
     uint64_t lightRevision(Technique technique) const;
@@ -93,7 +101,11 @@ class Renderer {
     /// @param grid  of the shadows: that of the visibility or PCA data
     /// @throws InputError  more than kMostSuns
     void setSuns(std::span<const SunLight> suns, const PointGrid& grid);
+    /// Tables, backgrounds and shadows of suns that were sent to OpenGL so far: those that did not change are
+    /// not sent again.
+    uint64_t uploads() const;
     /// Background: radiance per world direction, or black when never set.
+    /// @throws InputError  larger than OpenGL takes
     void setBackground(const FloatImage& latLong, double rotationRad);
 
     /// @throws InputError  the technique was not added, or has no table or light

@@ -151,9 +151,14 @@ void TechniqueData::setTable(const NormalTable& table) {
                          fmt::format("is of order {} with {} layers, the data needs order {} with {}",
                                      table.shOrder, table.layers, shOrder_, layers),
                          "make it anew with prt tabulate");
-    uploadTable(context_, table, table_);
+    setTable([&](TableImage& image) { uploadTable(context_, table, image); });
+}
+
+void TechniqueData::setTable(const std::function<void(TableImage&)>& fill) {
+    PRT_CHECK(usesTable(technique_));
+    fill(table_);
     chooseProgram(fmt::format("{}#define TABLE_LAYERS {}\n#define TABLE_SIZE {}\n",
-                              layoutDefine(table.layout), table_.layers, table_.size));
+                              layoutDefine(table_.layout), table_.layers, table_.size));
     ++lightRevision_;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <string>
 #include <vector>
@@ -39,6 +40,10 @@ class TechniqueData {
     /// Light of a technique that looks it up by the normal.
     /// @throws InputError  kind, order or number of layers is not what the coefficients need
     void setTable(const NormalTable& table);
+    /// The same by a function that fills the table's image, with what fits the coefficients.
+    void setTable(const std::function<void(TableImage&)>& fill);
+    /// The table in use; no texture before one was set.
+    const TableImage& table() const { return table_; }
     /// Light of a technique that evaluates it at every pixel: Sh2 takes two bands of it, PcaUniform
     /// shOrder() + cosineBands − 1.
     /// @throws InputError  more uniforms than OpenGL takes
@@ -67,7 +72,7 @@ class TechniqueData {
     CoefficientImage coefficients_;
     TableImage table_;
     int shOrder_ = 0, perPoint_ = 0;
-    PcaMap basis_;  // without weights
+    PcaMap basis_;         // without weights
     std::string defines_;  // of the technique
     bool perVertex_ = false;
     std::map<std::string, LightProgram> programs_;  // by their defines

@@ -64,12 +64,15 @@ TEST(GlFunctions, MissingFunctionIsNamed) {
 
 TEST(Shaders, AllAreCarriedAndCompile) {
     GlContext context;
-    EXPECT_EQ(shaderSources().size(), 9u);
-    for (const std::string defines : {"", "#define PER_VERTEX\n", "#define WITH_MEAN\n"})
-        EXPECT_NO_THROW(GlProgram(context.gl(), "screen.vert", "light.frag", defines)) << defines;
+    EXPECT_EQ(shaderSources().size(), 12u);
+    const std::string table = "#define TABLE_LAYERS 2\n#define TABLE_SIZE 4\n";
+    for (const std::string defines :
+         {"", "#define PER_VERTEX\n", "#define WITH_MEAN\n", "#define MULTISAMPLED\n"})
+        EXPECT_NO_THROW(GlProgram(context.gl(), "screen.vert", "light.frag", table + defines)) << defines;
     EXPECT_NO_THROW(GlProgram(context.gl(), "surface.vert", "surface.frag", ""));
     EXPECT_NO_THROW(GlProgram(context.gl(), "screen.vert", "background.frag", ""));
     EXPECT_NO_THROW(GlProgram(context.gl(), "screen.vert", "display.frag", ""));
+    EXPECT_NO_THROW(GlProgram(context.gl(), "blend.vert", "blend.frag", "#define SOURCES 2\n", "blend.geom"));
     EXPECT_NO_THROW(context.check("compiling"));
 }
 
