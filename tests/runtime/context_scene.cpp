@@ -1,6 +1,9 @@
 #include "context_scene.h"
 
+#include <unistd.h>
+
 #include <cmath>
+#include <fstream>
 
 namespace prt::test {
 namespace {
@@ -53,6 +56,13 @@ Camera Showcase::camera() {
 
 RenderedFrame Showcase::draw(Renderer& renderer, Technique technique) const {
     return renderer.render(camera(), technique, options());
+}
+
+size_t residentBytes() {
+    std::ifstream file("/proc/self/statm");
+    size_t total = 0, resident = 0;
+    file >> total >> resident;
+    return resident * size_t(::sysconf(_SC_PAGESIZE));
 }
 
 double relativeRmse(const FloatImage& a, const FloatImage& b) {
