@@ -33,12 +33,23 @@ std::string bundleName(const std::string& path) {
     return folder.filename().string();
 }
 
+// JSON without its line breaks and the blanks behind them.
+std::string oneLine(const std::string& json) {
+    std::string line;
+    for (size_t i = 0; i < json.size(); ++i)
+        if (json[i] == '\n')
+            while (i + 1 < json.size() && json[i + 1] == ' ') ++i;
+        else
+            line += json[i];
+    return line + "\n";
+}
+
 class Viewer {
   public:
     explicit Viewer(const ViewOptions& options)
         : options_(options),
           window_(options.relight.width, options.relight.height, "prt view"),
-          scene_(window_.context(), options.relight),
+          scene_(window_.context(), options.relight, ViewWindow::wake),
           state_(firstState()),
           input_(scene_.choices(), state_),
           panel_(window_.size()) {
@@ -54,6 +65,7 @@ class Viewer {
             else
                 listen();
             answer();
+            followReference();
             present();
         }
         return report();
@@ -63,12 +75,15 @@ class Viewer {
     ViewState firstState() const;
     void listen();
     void dispatch(const std::vector<ViewEvent>& events);
+    std::vector<ViewEvent> ownEvents();
     void play(const ScriptStep& step);
     void playChoice(const ScriptStep& step);
     void answer();
     void present();
     void drawScene();
     void updatePanel();
+    void followReference();
+    void waitForReference(const ScriptStep& step);
     void screenshot(const std::filesystem::path& path);
     Report report() const;
     [[noreturn]] void fail(const ScriptStep& step, const std::string& problem,
@@ -121,6 +136,48 @@ void Viewer::listen() {
     }
     lastListen_ = now;
     dispatch(events);
+    // Rays are for a picture that stands still.
+    const WindowSize size = window_.size();
+    if (events.empty() && !dirty_ && needsReference(state_.shown) && !window_.isMinimised())
+        scene_.traceReference(state_, size.pixelWidth, size.pixelHeight);
+}
+
+void Viewer::followReference() {
+    if (scene_.pollReference()) {
+        drawn_.reset();
+        dirty_ = true;
+    }
+    const std::optional<double> progress = scene_.referenceProgress();
+    if (progress != facts_.reference) dirty_ = true;
+    facts_.reference = progress;
+}
+
+void Viewer::waitForReference(const ScriptStep& step) {
+    drawScene();
+    const auto isThere = [&] { return scene_.hasReference(state_, scene_.width(), scene_.height()); };
+    scene_.traceReference(state_, scene_.width(), scene_.height());
+    while (!isThere()) {
+        followReference();
+        if (isThere()) break;
+        if (!scene_.referenceProgress()) fail(step, "no environment shines", "give one a weight");
+        throwIfInterrupted();
+        dispatch(ownEvents());
+        if (requests_.quit) return;
+        present();
+        window_.events(kWaitSeconds);
+    }
+    drawn_.reset();
+    dirty_ = true;
+}
+
+// What the window itself tells (its new size, that it is to be closed): that counts while a script plays, a
+// hand on the mouse does not.
+std::vector<ViewEvent> Viewer::ownEvents() {
+    std::vector<ViewEvent> events = window_.events(0);
+    std::erase_if(events, [](const ViewEvent& event) {
+        return event.kind != ViewEventKind::Close && event.kind != ViewEventKind::Refresh;
+    });
+    return events;
 }
 
 // The panel sees every event first, and is laid out between them, so that it knows what is under the cursor.
@@ -147,10 +204,7 @@ void Viewer::updatePanel() {
 }
 
 void Viewer::play(const ScriptStep& step) {
-    // What the window itself tells (its new size, that it is to be closed) counts, a hand on the mouse does
-    // not.
-    for (const ViewEvent& event : window_.events(0))
-        if (event.kind == ViewEventKind::Close || event.kind == ViewEventKind::Refresh) dispatch({event});
+    dispatch(ownEvents());
     dirty_ = true;
     std::vector<ViewEvent> events = step.events;
     playedSeconds_ += 1;  // so that clicks of two steps are no double click
@@ -167,6 +221,9 @@ void Viewer::play(const ScriptStep& step) {
         case ScriptAction::Resize:
             window_.resize(step.index, step.index2);
             break;
+        case ScriptAction::WaitReference:
+            waitForReference(step);
+            break;
         case ScriptAction::Screenshot:
             screenshot(step.text);
             break;
@@ -175,7 +232,7 @@ void Viewer::play(const ScriptStep& step) {
             writePng(step.text, window_.read());
             break;
         case ScriptAction::Report:
-            std::fputs((report().text() + "\n").c_str(), stdout);
+            std::fputs(oneLine(report().text()).c_str(), stdout);
             break;
         case ScriptAction::Quit:
             requests_.quit = true;
@@ -317,6 +374,7 @@ Report Viewer::report() const {
         .set("light_switch_ms", statistics.switchMs)
         .set("frame_ms", statistics.frameMs)
         .set("screenshots", screenshots_);
+    if (statistics.relativeRmse) report.set("relative_rmse", *statistics.relativeRmse);
     return report;
 }
 

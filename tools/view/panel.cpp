@@ -121,8 +121,11 @@ void statisticsSection(const SceneView& scene, const PanelFacts& facts) {
     row("light switch", fmt::format("{:.2f} ms", statistics.switchMs));
     row("a pixel takes", fmt::format("{} fetches", statistics.cost.fetches));
     row("", fmt::format("{} multiply-adds", statistics.cost.multiplyAdds));
-    row("relative RMSE", statistics.relativeRmse ? fmt::format("{:.4f}", *statistics.relativeRmse)
-                                                 : std::string("no reference"));
+    if (statistics.relativeRmse)
+        row("relative RMSE", fmt::format("{:.4f}", *statistics.relativeRmse));
+    else
+        row("reference",
+            facts.reference ? fmt::format("{:.0f} %", 100 * *facts.reference) : std::string("none"));
     if (statistics.psnrDb) row("PSNR", fmt::format("{:.1f} dB", *statistics.psnrDb));
 }
 
@@ -303,6 +306,11 @@ void ViewPanel::update(double seconds, const WindowSize& size, const SceneView& 
         if (ImGui::Button("screenshot")) input.act(ViewAction::Screenshot, state, requests);
         ImGui::SameLine();
         if (ImGui::Button("help")) input.act(ViewAction::Help, state, requests);
+        if (!scene.statistics().problem.empty()) {
+            ImGui::PushStyleColor(ImGuiCol_Text, ImVec4(1, 0.6f, 0.4f, 1));
+            ImGui::TextWrapped("%s", scene.statistics().problem.c_str());
+            ImGui::PopStyleColor();
+        }
         if (!facts.message.empty()) ImGui::TextWrapped("%s", facts.message.c_str());
         ImGui::PopItemWidth();
         ImGui::End();

@@ -1,7 +1,7 @@
 // The viewer's panel, legend and help, by Dear ImGui. In builds with PRT_WITH_VIEWER.
 #pragma once
 
-#include <memory>
+#include <optional>
 #include <string>
 
 #include "tools/view/input.h"
@@ -13,8 +13,9 @@ namespace prt::tools {
 /// What the panel tells besides the state.
 struct PanelFacts {
     std::string bundle, renderer;
-    std::string message;         ///< of the last action, e.g. "wrote prt-view-0001.png"; may be empty
-    double framesPerSecond = 0;  ///< 0: not measured
+    std::string message;              ///< of the last action, e.g. "wrote prt-view-0001.png"; may be empty
+    double framesPerSecond = 0;       ///< 0: not measured
+    std::optional<double> reference;  ///< share that is done of the one under way
 };
 
 class ViewPanel {

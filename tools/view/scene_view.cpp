@@ -15,9 +15,12 @@
 #include "runtime/gl_objects.h"
 #include "runtime/renderer.h"
 #include "tools/background.h"
+#include "tools/comparison.h"
 #include "tools/exposure.h"
+#include "tools/measure/picture.h"
 #include "tools/relight_suns.h"
 #include "tools/relight_techniques.h"
+#include "tools/view/reference.h"
 
 namespace prt::tools {
 namespace {
@@ -33,7 +36,7 @@ struct Canvas {
 }  // namespace
 
 struct SceneView::State {
-    State(GlContext& glContext, const RelightArguments& given)
+    State(GlContext& glContext, const RelightArguments& given, std::function<void()> wakeUp)
         : context(glContext),
           gl(glContext.gl()),
           arguments(given),
@@ -41,7 +44,8 @@ struct SceneView::State {
           available(data.techniques),
           techniques(given, data),
           suns(data.bundle, data.scene, data.environments),
-          renderer(glContext, data.scene, nullptr, nullptr) {
+          renderer(glContext, data.scene, nullptr, nullptr),
+          wake(std::move(wakeUp)) {
         choices.techniques = available;
         for (const Environment& environment : data.environments)
             choices.environments.push_back(environment.name);
@@ -57,9 +61,14 @@ struct SceneView::State {
     }
     void resize(int width, int height);
     void setBackground(const ViewState& view);
-    void setLight(const ViewState& view, bool moving);
+    bool setLight(const ViewState& view, bool moving);
     void setPoints(const ViewState& view);
     void chooseExposure(const ViewState& view);
+    ReferencePicture pictureOf(const ViewState& view, int width, int height) const;
+    const TracedReference* referenceOf(const ViewState& view, int width, int height) const;
+    void drawLit(const ViewState& view, const Camera& camera, const DrawTarget& target);
+    void drawCompared(const ViewState& view, const TracedReference& reference, const DrawTarget& target);
+    void compare(const ViewState& view, const TracedReference& reference);
     RenderOptions options(const ViewState& view) const {
         return {canvas.width, canvas.height, view.normalMap, view.samples};
     }
@@ -88,12 +97,16 @@ struct SceneView::State {
     bool hasBackground = true;              // the renderer was given one
     std::optional<PointColours> points;
     std::pair<Shown, int> pointsOf{Shown::Lit, 0};
+    std::function<void()> wake;
     std::optional<RayCaster> caster;
+    std::optional<ReferenceTracer> tracer;
+    std::optional<Light> compared;                  // whose error stands in the statistics …
+    const TracedReference* comparedWith = nullptr;  // … against this
     ViewStatistics statistics;
 };
 
-SceneView::SceneView(GlContext& context, const RelightArguments& arguments)
-    : state_(std::make_unique<State>(context, arguments)) {}
+SceneView::SceneView(GlContext& context, const RelightArguments& arguments, std::function<void()> wake)
+    : state_(std::make_unique<State>(context, arguments, std::move(wake))) {}
 
 SceneView::~SceneView() { state_->context.makeCurrent(); }
 
@@ -150,27 +163,35 @@ void SceneView::State::setBackground(const ViewState& view) {
     hasBackground = true;
 }
 
-void SceneView::State::setLight(const ViewState& view, bool moving) {
+// Whether the technique has a light like this; else says why not.
+bool SceneView::State::setLight(const ViewState& view, bool moving) {
     const Technique technique = available[view.technique];
-    if (!added.contains(technique)) {
-        // Only what is looked at is reduced and uploaded.
-        data.techniques = {technique};
-        techniques.addTo(renderer);
-        added.insert(technique);
-    }
     const std::vector<double> weights = view.effectiveWeights();
     const Light light{technique, weights, view.rotationRad};
     const bool changed = lit != light;
+    statistics.problem.clear();
     const Stopwatch watch;
-    techniques.setLight(renderer, technique, weights, view.rotationRad);
-    // Shadows of a turned sun are traced: not in the middle of a drag.
-    if (arguments.tables.extractSun && !moving) suns.setTo(renderer, weights, view.rotationRad);
-    if (!changed) return;
+    try {
+        // Only what is looked at is reduced and uploaded.
+        if (added.insert(techniques.drawn(technique)).second) {
+            data.techniques = {technique};
+            techniques.addTo(renderer);
+        }
+        techniques.setLight(renderer, technique, weights, view.rotationRad);
+        // Shadows of a turned sun are traced: not in the middle of a drag.
+        if (arguments.tables.extractSun && !moving) suns.setTo(renderer, weights, view.rotationRad);
+    } catch (const InputError& error) {
+        statistics.problem = error.what();
+        lit.reset();
+        return false;
+    }
+    if (!changed) return true;
     gl.Finish();
     statistics.switchMs = watch.seconds() * 1e3;
     ++statistics.switches;
     lit = light;
     statistics.cost = techniqueCost(technique, data.source(), data.domain(), arguments.tables.cosineBands());
+    return true;
 }
 
 void SceneView::State::setPoints(const ViewState& view) {
@@ -195,31 +216,131 @@ void SceneView::State::chooseExposure(const ViewState& view) {
         autoExposure(renderer.render(camera, technique, small).radiance, renderer.surface(camera, small));
 }
 
+ReferencePicture SceneView::State::pictureOf(const ViewState& view, int width, int height) const {
+    ReferencePicture picture{view.camera, width, height, view.normalMap, view.rotationRad, {}};
+    const std::vector<double> weights = view.effectiveWeights();
+    for (size_t e = 0; e < weights.size(); ++e)
+        if (weights[e] > 0) picture.environments.push_back(e);
+    return picture;
+}
+
+const TracedReference* SceneView::State::referenceOf(const ViewState& view, int width, int height) const {
+    const TracedReference* result = tracer ? tracer->result() : nullptr;
+    if (!result || !result->picture.covers(view.effectiveWeights())) return nullptr;
+    ReferencePicture picture = pictureOf(view, width, height);
+    picture.environments = result->picture.environments;  // more of them do no harm
+    return picture == result->picture ? result : nullptr;
+}
+
+void SceneView::State::drawLit(const ViewState& view, const Camera& camera, const DrawTarget& target) {
+    renderer.draw(camera, techniques.drawn(available[view.technique]), options(view),
+                  {statistics.exposureStops, view.toneCurve}, target);
+}
+
+// The reference itself, or what the technique is away from it.
+void SceneView::State::drawCompared(const ViewState& view, const TracedReference& reference,
+                                    const DrawTarget& target) {
+    const Camera camera = view.camera.camera();
+    FloatImage image = radianceOf(reference.blend(view.effectiveWeights()), reference.surface);
+    DisplayOptions display{statistics.exposureStops, view.toneCurve};
+    if (view.shown == Shown::Reference) {
+        if (view.background)
+            paintBackground(image, reference.surface, camera, choices.bounds, background, view.rotationRad);
+    } else {
+        RenderOptions plain = options(view);
+        plain.samples = 1;
+        const Technique technique = techniques.drawn(available[view.technique]);
+        image =
+            scaledDifference(renderer.render(camera, technique, plain).radiance, image, reference.surface);
+        display.toneCurve = ToneCurve::None;
+    }
+    renderer.drawImage(image, display, target);
+}
+
+// Once for every light and reference.
+void SceneView::State::compare(const ViewState& view, const TracedReference& reference) {
+    if (compared == lit && comparedWith == &reference) return;
+    const Technique technique = techniques.drawn(available[view.technique]);
+    const RenderOptions plain{canvas.width, canvas.height, view.normalMap, 1};
+    const RenderedFrame frame = renderer.render(view.camera.camera(), technique, plain);
+    const IrradianceError error = compareIrradiance(
+        frame.irradiance.pixels, reference.blend(view.effectiveWeights()), reference.surface);
+    statistics.relativeRmse = error.relativeRmse;
+    statistics.psnrDb = error.psnrDb;
+    compared = lit;
+    comparedWith = &reference;
+}
+
 void SceneView::draw(const ViewState& view, int width, int height, bool moving) {
     State& s = *state_;
     PRT_CHECK(view.technique < s.available.size());
     s.context.makeCurrent();
     s.resize(width, height);
+    if (s.tracer && s.tracer->underWay() && *s.tracer->underWay() != s.pictureOf(view, width, height))
+        s.tracer->stop();
     const Camera camera = view.camera.camera();
     const DrawTarget target{s.canvas.framebuffer.name(), 0, 0};
-    if (showsPoints(view.shown)) {
+    const bool points = showsPoints(view.shown);
+    if (points) {
         s.setPoints(view);
-        const Stopwatch watch;
-        s.renderer.drawPoints(camera, s.options(view), {}, target);
-        s.gl.Finish();
-        s.statistics.frameMs = watch.seconds() * 1e3;
     } else {
-        s.setBackground(view);
-        s.setLight(view, moving);
-        s.chooseExposure(view);
-        const Stopwatch watch;
-        s.renderer.draw(camera, s.techniques.drawn(s.available[view.technique]), s.options(view),
-                        {s.statistics.exposureStops, view.toneCurve}, target);
-        s.gl.Finish();
-        s.statistics.frameMs = watch.seconds() * 1e3;
         s.pointsOf.first = Shown::Lit;
+        s.setBackground(view);
+        if (!s.setLight(view, moving)) {
+            s.renderer.drawImage({width, height, 3, std::vector<float>(size_t(width) * size_t(height) * 3)},
+                                 {}, target);
+            ++s.statistics.frames;
+            return;
+        }
+        s.chooseExposure(view);
     }
+    const TracedReference* reference = points ? nullptr : s.referenceOf(view, width, height);
+    if (reference) {
+        s.compare(view, *reference);
+    } else {
+        s.statistics.relativeRmse = s.statistics.psnrDb = std::nullopt;
+        s.compared.reset();
+    }
+    const Stopwatch watch;
+    if (points)
+        s.renderer.drawPoints(camera, s.options(view), {}, target);
+    else if (reference && needsReference(view.shown))
+        s.drawCompared(view, *reference, target);
+    else
+        s.drawLit(view, camera, target);
+    s.gl.Finish();
+    s.statistics.frameMs = watch.seconds() * 1e3;
     ++s.statistics.frames;
+}
+
+void SceneView::traceReference(const ViewState& view, int width, int height) {
+    State& s = *state_;
+    const ReferencePicture picture = s.pictureOf(view, width, height);
+    if (hasReference(view, width, height) || picture.environments.empty()) return stopReference();
+    if (!s.tracer) s.tracer.emplace(s.rays(), s.data.environments, s.arguments.referenceRays, s.wake);
+    s.tracer->start(picture, [&] {
+        s.context.makeCurrent();
+        return s.renderer.surface(view.camera.camera(), {width, height, view.normalMap, 1});
+    });
+}
+
+void SceneView::stopReference() {
+    if (state_->tracer) state_->tracer->stop();
+}
+
+bool SceneView::pollReference() {
+    if (!state_->tracer || !state_->tracer->poll()) return false;
+    state_->compared.reset();
+    return true;
+}
+
+bool SceneView::hasReference(const ViewState& view, int width, int height) const {
+    return state_->referenceOf(view, width, height) != nullptr;
+}
+
+std::optional<double> SceneView::referenceProgress() const {
+    if (!state_->tracer || !state_->tracer->underWay()) return std::nullopt;
+    return state_->tracer->progress();
 }
 
 ByteImage SceneView::image() const {

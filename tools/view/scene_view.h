@@ -1,6 +1,7 @@
 // Draws what a ViewState says, into an image of its own. Any context will do: no window is needed.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -25,21 +26,24 @@ struct ViewStatistics {
     double exposureStops = 0;  ///< as shown
     /// Of the technique against the reference, where that is there for just this picture.
     std::optional<double> relativeRmse, psnrDb;
+    std::string problem;  ///< why the technique cannot be lit like this; empty: it can
 };
 
 class SceneView {
   public:
     /// Loads the bundle and the environments.
     /// @param arguments  finished; must outlive the object
+    /// @param wake       called from another thread when a reference goes on; may be empty
     /// @throws InputError, UsageError  as prt relight
-    SceneView(GlContext& context, const RelightArguments& arguments);
+    SceneView(GlContext& context, const RelightArguments& arguments, std::function<void()> wake = {});
     ~SceneView();
 
     const ViewChoices& choices() const;
     /// Camera, light and options as the arguments say.
     ViewState startState() const;
 
-    /// Draws; only what changed since the last time is made anew.
+    /// Draws; only what changed since the last time is made anew. Reference and difference are of the
+    /// technique's own picture until they are traced.
     /// @param width, height  pixels, >= 1
     /// @param moving         a drag or a flight is under way: what takes long may wait
     /// @throws InputError  larger than OpenGL takes; Interrupted
@@ -50,6 +54,18 @@ class SceneView {
     unsigned framebuffer() const;
     int width() const;
     int height() const;
+
+    /// Begins to trace the reference of the picture, in another thread, unless that is done; a reference of
+    /// another picture is given up, by draw() too. Nothing to do where no environment shines.
+    void traceReference(const ViewState& state, int width, int height);
+    void stopReference();
+    /// Takes a reference that was finished.
+    /// @return whether there was one
+    bool pollReference();
+    /// Whether the reference of the picture is there.
+    bool hasReference(const ViewState& state, int width, int height) const;
+    /// Share of the reference under way that is done; nothing where none is.
+    std::optional<double> referenceProgress() const;
 
     /// Legend of what is shown; null unless points are.
     const PointColours* pointColours() const;

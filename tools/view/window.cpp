@@ -135,6 +135,7 @@ void ViewWindow::blit(unsigned framebuffer, int width, int height) {
     const bool same = now.pixelWidth == width && now.pixelHeight == height;
     state_->blitFramebuffer(framebuffer, 0, 0, 0, width, height, 0, 0, now.pixelWidth, now.pixelHeight,
                             GL_COLOR_BUFFER_BIT, same ? GL_NEAREST : GL_LINEAR);
+    state_->context.gl().BindFramebuffer(GL_FRAMEBUFFER, 0);
 }
 
 ByteImage ViewWindow::read() const {

@@ -40,7 +40,8 @@ class ViewWindow {
     /// Seconds on the clock of events.
     double seconds() const;
 
-    /// Copies a framebuffer of that size over the whole window, scaled where sizes differ.
+    /// Copies a framebuffer of that size over the whole window, scaled where sizes differ, and makes the
+    /// window what is drawn into.
     void blit(unsigned framebuffer, int width, int height);
     /// What stands in the window before it is shown, rows from the top, 3 channels.
     ByteImage read() const;
