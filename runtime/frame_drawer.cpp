@@ -112,6 +112,7 @@ void FrameDrawer::drawLight(const CameraFrame& camera, const GlProgram& program,
     }
     const size_t sunCount = pass.suns ? suns_.size() : 0;
     program.set("sunCount", int(sunCount));
+    program.set("sunsPerTexel", int(sunShadows_.grid.domain == PointDomain::Texel));
     for (size_t i = 0; i < sunCount; ++i) {
         program.set(fmt::format("sunDirection[{}]", i).c_str(), suns_[i].direction);
         program.set(fmt::format("sunIrradiance[{}]", i).c_str(), suns_[i].irradiance);

@@ -2,7 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
+#include <optional>
 #include <utility>
 
 #include "precompute/base/error.h"
@@ -14,9 +14,9 @@
 #include "tools/commands.h"
 #include "tools/comparison.h"
 #include "tools/exposure.h"
+#include "tools/file_names.h"
 #include "tools/measure/picture.h"
 #include "tools/relight_arguments.h"
-#include "tools/relight_images.h"
 #include "tools/relight_scene.h"
 #include "tools/relight_sequence.h"
 #include "tools/report.h"
@@ -37,7 +37,7 @@ class Relight {
 
     Report run() {
         const bool reference = arguments_.compareReference || arguments_.reference;
-        surface_ = scene_.renderer().surface(camera_, scene_.options());
+        surface_ = scene_.surface(camera_);
         covered_ = size_t(std::count_if(surface_.triangle.begin(), surface_.triangle.end(),
                                         [](uint32_t t) { return t != kNoTriangle; }));
         if (covered_ == 0)
@@ -129,7 +129,7 @@ class Relight {
                                 arguments_.rotationRad());
         }
         if (arguments_.tables.extractSun && !data_.techniques.empty()) report.set("suns", uint64_t(suns));
-        if (arguments_.reference) writeImages(referenceImage, referenceImage, name, "reference");
+        if (arguments_.reference) writeImages(referenceImage, referenceImage, name, std::nullopt);
 
         std::vector<Report> rows;
         for (const Technique technique : data_.techniques)
@@ -154,7 +154,7 @@ class Relight {
         const RenderedFrame frame = scene_.render(technique, camera_, &origin);
         if (arguments_.isAsked(technique)) {
             if (technique == firstAsked()) report.set("tables", origin);
-            writeImages(frame.radiance, referenceImage, environment, name);
+            writeImages(frame.radiance, referenceImage, environment, technique);
         }
         if (!arguments_.compareReference) return;
         const int bounces = scene_.techniques().bounces(technique);
@@ -181,20 +181,31 @@ class Relight {
                    error.relativeRmse, error.psnrDb);
     }
 
+    /// @param technique  that the image was drawn by; none: it is the reference
     void writeImages(const FloatImage& image, const FloatImage& reference, const std::string& environment,
-                     const std::string& technique) const {
+                     std::optional<Technique> technique) {
         const double exposure = arguments_.exposureStops
                                     ? *arguments_.exposureStops
                                     : autoExposure(reference.pixels.empty() ? image : reference, surface_);
-        const auto write = [&](const std::string& pattern, const FloatImage& picture) {
-            const std::string file = fileNamed(pattern, {{"{env}", environment}, {"{technique}", technique}});
-            writeImage(file, picture, exposure, arguments_);
-            if (!file.empty()) logNote("wrote " + file);
+        const std::string name = technique ? techniqueName(*technique) : "reference";
+        const auto write = [&](const std::string& pattern, const FloatImage& linear, const auto& shown) {
+            if (pattern.empty()) return;
+            const std::string file = fileNamed(pattern, {{"{env}", environment}, {"{technique}", name}});
+            if (file.ends_with(".exr"))
+                writeExrImage(file, linear);
+            else
+                writePng(file, shown());
+            logNote("wrote " + file);
         };
-        write(arguments_.output, image);
-        write(arguments_.referenceOutput, reference);
-        if (!arguments_.differenceOutput.empty())
-            write(arguments_.differenceOutput, scaledDifference(image, reference, surface_));
+        write(arguments_.output, image, [&] {
+            return technique ? scene_.picture(*technique, camera_, image, exposure)
+                             : toDisplay(image, exposure, arguments_.toneCurve);
+        });
+        write(arguments_.referenceOutput, reference,
+              [&] { return toDisplay(reference, exposure, arguments_.toneCurve); });
+        if (arguments_.differenceOutput.empty()) return;
+        const FloatImage difference = scaledDifference(image, reference, surface_);
+        write(arguments_.differenceOutput, difference, [&] { return toDisplay(difference, exposure); });
     }
 
     void timeFrames(Report& report) {

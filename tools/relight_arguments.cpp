@@ -73,6 +73,7 @@ void RelightArguments::addTo(CommandLine& line) {
         "image to write: .png (sRGB) or .exr (linear); of a sequence with {frame} in its name, or a video: "
         ".mp4, .mkv, .webm, .gif");
     line.text("--size", sizeText, "WIDTHxHEIGHT", "pixels");
+    line.integer("--samples", samples, 1, 4, "of a pixel: 1, or 4 for smooth edges");
     line.text("--exposure", exposureText, "STOPS|auto", "brightness of .png output");
     line.choice("--tone", toneText, {"none", "filmic", "neutral"}, "tone curve of .png output and videos");
     line.text("--eye", eyeText, "X,Y,Z", "camera position; else it is placed by the next three");
@@ -194,6 +195,10 @@ void RelightArguments::finish() {
                              fmt::format("'{}' is neither a number of stops nor auto", exposureText));
     }
     checkTableOptions(tables, "--table-");
+    if (samples != 1 && samples != 4)
+        throw UsageError("--samples", fmt::format("{} is neither 1 nor 4", samples));
+    if (samples > 1 && (compareReference || reference))
+        throw UsageError("--samples", "the reference has one sample to a pixel", "leave out one of the two");
     toneCurve = toneCurveFromName(toneText).value();
     parseSequence();
     checkOutputs();

@@ -36,6 +36,7 @@ struct RelightArguments {
     std::string output, referenceOutput, differenceOutput;
     std::string exposureText = "0";
     std::string eyeText, targetText, toneText = "none", transitionText;
+    int samples = 1;
     int turntableFrames = 0, rotateLightFrames = 0;  ///< 0: no such motion
     double framesPerSecond = 25;
     double rotateDeg = 0, fovDeg = 40, azimuthDeg = 35, elevationDeg = 18, distance = 1;

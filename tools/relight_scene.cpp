@@ -10,7 +10,7 @@ RelightScene::RelightScene(const RelightArguments& arguments)
       data_(loadRelightData(arguments)),
       techniques_(arguments, data_),
       suns_(data_.bundle, data_.scene, data_.environments),
-      options_{arguments.width, arguments.height, !arguments.noNormalMap},
+      options_{arguments.width, arguments.height, !arguments.noNormalMap, arguments.samples},
       bounds_(sceneBounds(data_.scene)),
       context_(arguments.context.kind()),
       renderer_(context_, data_.scene, nullptr, nullptr) {
@@ -35,6 +35,23 @@ RenderedFrame RelightScene::render(Technique technique, const Camera& camera, co
     const char* from = techniques_.setLight(renderer_, technique, light_->weights, light_->rotationRad);
     if (origin) *origin = from;
     return renderer_.render(camera, techniques_.drawn(technique), options_);
+}
+
+ByteImage RelightScene::picture(Technique technique, const Camera& camera, const FloatImage& radiance,
+                                double exposureStops) {
+    if (options_.samples == 1) return toDisplay(radiance, exposureStops, arguments_.toneCurve);
+    const ByteImage rgba = renderer_.picture(camera, techniques_.drawn(technique), options_,
+                                             {exposureStops, arguments_.toneCurve});
+    ByteImage rgb{rgba.width, rgba.height, 3, {}};
+    for (size_t i = 0; i < rgba.pixels.size(); ++i)
+        if (i % 4 != 3) rgb.pixels.push_back(rgba.pixels[i]);
+    return rgb;
+}
+
+SurfaceImage RelightScene::surface(const Camera& camera) {
+    RenderOptions centres = options_;
+    centres.samples = 1;
+    return renderer_.surface(camera, centres);
 }
 
 }  // namespace prt::tools

@@ -37,6 +37,15 @@ class RelightScene {
     /// @param origin  as RelightTechniques::setLight gives it; may be null
     RenderedFrame render(Technique technique, const Camera& camera, const char** origin = nullptr);
 
+    /// The frame of render() as .png files and videos show it. Of four samples, exposure and tone curve come
+    /// before their mean.
+    /// @param radiance  that frame's
+    /// @return 3 channels
+    ByteImage picture(Technique technique, const Camera& camera, const FloatImage& radiance,
+                      double exposureStops);
+    /// Of the pixels' centres.
+    SurfaceImage surface(const Camera& camera);
+
     const RelightData& data() const { return data_; }
     RelightTechniques& techniques() { return techniques_; }
     const GlContext& context() const { return context_; }

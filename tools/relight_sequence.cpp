@@ -11,9 +11,11 @@
 
 #include "precompute/base/error.h"
 #include "precompute/base/log.h"
+#include "precompute/io/environment_file.h"
 #include "precompute/math/sh_rotation.h"
 #include "tools/exposure.h"
-#include "tools/relight_images.h"
+#include "tools/file_names.h"
+#include "tools/measure/picture.h"
 #include "tools/video.h"
 
 namespace prt::tools {
@@ -46,21 +48,20 @@ std::pair<size_t, size_t> transitionEnds(const std::string& text, const std::vec
 class FrameSink {
   public:
     FrameSink(const RelightArguments& arguments, Technique technique, size_t frames)
-        : arguments_(arguments),
-          pattern_(fileNamed(arguments.output, {{"{technique}", techniqueName(technique)}})),
+        : pattern_(fileNamed(arguments.output, {{"{technique}", techniqueName(technique)}})),
           digits_(std::max<size_t>(4, std::to_string(frames - 1).size())) {
         makeFolder();
         if (isVideoName(pattern_))
             video_ = std::make_unique<VideoWriter>(pattern_, arguments.width, arguments.height,
                                                    arguments.framesPerSecond);
     }
-    void add(size_t frame, const FloatImage& radiance, double exposureStops) {
-        if (video_) {
-            video_->add(toDisplay(radiance, exposureStops, arguments_.toneCurve));
-            return;
-        }
-        const std::string number = fmt::format("{:0{}}", frame, digits_);
-        writeImage(fileNamed(pattern_, {{"{frame}", number}}), radiance, exposureStops, arguments_);
+    bool isLinear() const { return pattern_.ends_with(".exr"); }
+    void add(size_t frame, const FloatImage& radiance) { writeExrImage(fileOf(frame), radiance); }
+    void add(size_t frame, const ByteImage& picture) {
+        if (video_)
+            video_->add(picture);
+        else
+            writePng(fileOf(frame), picture);
     }
     void finish() {
         if (video_) video_->finish();
@@ -69,6 +70,9 @@ class FrameSink {
     const std::string& pattern() const { return pattern_; }
 
   private:
+    std::string fileOf(size_t frame) const {
+        return fileNamed(pattern_, {{"{frame}", fmt::format("{:0{}}", frame, digits_)}});
+    }
     void makeFolder() const {
         const std::filesystem::path folder = std::filesystem::path(pattern_).parent_path();
         std::error_code error;
@@ -76,7 +80,6 @@ class FrameSink {
         if (error) throw OutputError(folder.string(), fmt::format("cannot be made: {}", error.message()));
     }
 
-    const RelightArguments& arguments_;
     std::string pattern_;
     size_t digits_;
     std::unique_ptr<VideoWriter> video_;
@@ -137,9 +140,11 @@ Report runSequence(const RelightArguments& arguments) {
             const Camera view = turnedCamera(camera, frames[i].cameraTurnRad);
             for (size_t t = 0; t < techniques.size(); ++t) {
                 const FloatImage radiance = scene.render(techniques[t], view).radiance;
-                if (!exposure)
-                    exposure = autoExposure(radiance, scene.renderer().surface(view, scene.options()));
-                sinks[t]->add(i, radiance, *exposure);
+                if (!exposure) exposure = autoExposure(radiance, scene.surface(view));
+                if (sinks[t]->isLinear())
+                    sinks[t]->add(i, radiance);
+                else
+                    sinks[t]->add(i, scene.picture(techniques[t], view, radiance, *exposure));
                 progress.advance(1);
             }
         }

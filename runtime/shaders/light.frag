@@ -26,7 +26,7 @@ layout(binding = 6) uniform usamplerBuffer indices;
 layout(binding = 7) uniform sampler2DArray sunShadows;  // four suns to a layer
 
 uniform ivec2 gridSize;
-uniform int sunCount;
+uniform int sunCount, sunsPerTexel;
 uniform vec3 sunDirection[8], sunIrradiance[8];
 
 layout(location = 0) out vec4 outRadiance;
@@ -72,6 +72,7 @@ vec4 tableAt(vec3 point, int group) {
 struct Points {
     ivec2 corner[3];
     vec3 weights;
+    vec2 atlas;
 };
 
 ivec2 gridPoint(uint index) {
@@ -86,7 +87,8 @@ Points pointsAt(uint triangle, vec4 place) {
 #ifdef NEAREST_POINT
     b = b.x >= max(b.y, b.z) ? vec3(1.0, 0.0, 0.0) : b.y >= b.z ? vec3(0.0, 1.0, 0.0) : vec3(0.0, 0.0, 1.0);
 #endif
-    return Points(ivec2[3](gridPoint(first), gridPoint(first + 1u), gridPoint(first + 2u)), b / (b.x + b.y + b.z));
+    return Points(ivec2[3](gridPoint(first), gridPoint(first + 1u), gridPoint(first + 2u)), b / (b.x + b.y + b.z),
+                  place.zw);
 }
 
 vec4 valuesAt(sampler2DArray image, Points points, int layer) {
@@ -102,12 +104,22 @@ Points pointsAt(uint triangle, vec4 place) { return place.zw; }
 vec4 valuesAt(sampler2DArray image, Points point, int layer) { return textureLod(image, vec3(point, layer), 0.0); }
 #endif
 
+#ifdef PER_VERTEX
+/// Weights may be at the vertices of a mesh whose other data are in an atlas.
+vec4 shadowsAt(Points points, int layer) {
+    return sunsPerTexel != 0 ? textureLod(sunShadows, vec3(points.atlas, layer), 0.0)
+                             : valuesAt(sunShadows, points, layer);
+}
+#else
+vec4 shadowsAt(Points point, int layer) { return valuesAt(sunShadows, point, layer); }
+#endif
+
 /// Each sun: what it sends to a surface of this normal, times the share of its disc that the point sees.
 vec3 sunlight(Points points, vec3 normal) {
     vec3 sum = vec3(0.0);
 #ifndef LIGHTMAP  // which has them already
     for (int i = 0; i < sunCount; ++i)
-        sum += sunIrradiance[i] * max(dot(normal, sunDirection[i]), 0.0) * valuesAt(sunShadows, points, i / 4)[i % 4];
+        sum += sunIrradiance[i] * max(dot(normal, sunDirection[i]), 0.0) * shadowsAt(points, i / 4)[i % 4];
 #endif
     return sum;
 }

@@ -196,6 +196,14 @@ TEST_P(Techniques, VertexPcaDrawsWeightsOfVertices) {
     const FloatImage a = renderer.render(facing(), Technique::Pca, kSmall).irradiance,
                      b = renderer.render(facing(), Technique::VertexPca, kSmall).irradiance;
     for (size_t i = 0; i < a.pixels.size(); ++i) ASSERT_NEAR(a.pixels[i], b.pixels[i], 1e-4);
+    // Shadows stay where the bundle's data are.
+    SunLight sun{Vec3f(1, 1, 1).normalized(), {5, 5, 5}, {}};
+    for (size_t i = 0; i < visibility_.grid.count; ++i) sun.shadow.push_back(i % 2 ? 1.0f : 0.0f);
+    renderer.setSuns(std::span(&sun, 1), visibility_.grid);
+    const FloatImage c = renderer.render(facing(), Technique::Pca, kSmall).irradiance,
+                     d = renderer.render(facing(), Technique::VertexPca, kSmall).irradiance;
+    EXPECT_NE(a.pixels, c.pixels);
+    for (size_t i = 0; i < c.pixels.size(); ++i) ASSERT_NEAR(c.pixels[i], d.pixels[i], 1e-4);
     EXPECT_GT(*std::ranges::max_element(a.pixels), 0.1f);
 }
 

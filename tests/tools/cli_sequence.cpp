@@ -120,6 +120,28 @@ TEST_F(SequenceCommand, ExposureStaysThatOfTheFirstFrame) {
     EXPECT_GT(difference("e0001.png", "own.png"), kOther);
 }
 
+// A white box under a bright sky, so that both show: edges are between, and bright colours are drawn in.
+TEST_F(SequenceCommand, SamplesAndTonesAreThoseOfSinglePictures) {
+    const Words bright = {"--env", "sky:uniform", "--exposure", "2", "--no-background"};
+    const auto with = [&](Words options) {
+        options.insert(options.begin(), bright.begin(), bright.end());
+        return options;
+    };
+    draw(with({"-o", "plain.png"}));
+    draw(with({"--samples", "4", "-o", "smooth.png"}));
+    draw(with({"--tone", "filmic", "-o", "filmic.png"}));
+    draw(with({"--tone", "neutral", "--samples", "4", "-o", "both.png"}));
+    draw(with({"--tone", "neutral", "--samples", "4", "--turntable", "2", "-o", "both{frame}.png"}));
+    EXPECT_GT(difference("smooth.png", "plain.png"), 0.003);
+    EXPECT_LT(difference("smooth.png", "plain.png"), 0.2);
+    EXPECT_GT(difference("filmic.png", "plain.png"), kOther);
+    EXPECT_GT(difference("both.png", "smooth.png"), kOther);
+    EXPECT_EQ(slurp(folder_ / "both0000.png"), slurp(folder_ / "both.png"));
+    EXPECT_EQ(relight({"--samples", "2", "-o", "no.png"}).exitCode, 2);
+    EXPECT_EQ(relight({"--samples", "4", "--technique", "reference", "-o", "no.png"}).exitCode, 2);
+    EXPECT_EQ(relight({"--tone", "sepia", "-o", "no.png"}).exitCode, 2);
+}
+
 TEST_F(SequenceCommand, LinearFrames) {
     draw({"--turntable", "2", "-o", "{frame}.exr"});
     draw({"-o", "single.exr"});
