@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "precompute/base/error.h"
-#include "runtime/shader_library.h"
+#include "runtime/shader_sources.h"
 
 namespace prt {
 namespace {

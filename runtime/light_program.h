@@ -19,6 +19,7 @@ class LightProgram {
     /// @param samples  of a pixel
     /// @throws Error   the compiler's log
     const GlProgram& of(int samples) const;
+    const std::string& defines() const { return defines_; }
 
   private:
     const GlFunctions& gl_;

@@ -219,6 +219,15 @@ void Renderer::setLight(Technique technique, const LiveLight& light, const std::
     s.lights.set(technique, s.dataOf(technique), light, weights, rotationRad, blendOn);
 }
 
+TableTexture Renderer::tableTexture(Technique technique) const {
+    if (!usesTable(technique)) throw InputError(techniqueName(technique), "has no table");
+    const TableImage& table = state_->ready(technique).table();
+    const int groups = 3 * table.layers + (table.mean ? 1 : 0);
+    return {table.texture.name(), table.layout, table.size, table.layers, table.mean, table.images / groups};
+}
+
+std::string Renderer::shaderDefines(Technique technique) const { return state_->ready(technique).defines(); }
+
 uint64_t Renderer::uploads() const {
     return state_->lights.tableUploads() + state_->tables + state_->frame.uploads();
 }

@@ -56,6 +56,21 @@ struct SunLight {
 /// Suns that a renderer draws at a time.
 inline constexpr int kMostSuns = 8;
 
+/// The table of a technique as OpenGL has it: a 2D array of RGBA32F, linearly filtered, without mipmaps.
+/// Group g = colour·layers + i holds coefficients 4i … 4i + 3 of a colour (R, G, B: 0, 1, 2), one to a
+/// channel; group 3·layers the mean of triple products, in RGB. A group is `imagesPerGroup` images of the
+/// array, from g·imagesPerGroup on: of a cube the faces, in OpenGL's order, each within a border of one texel
+/// of its neighbours. runtime/shaders/table.glsl reads it.
+/// @source [IwanickiSloan2012, Sec. 3.4]
+struct TableTexture {
+    unsigned name = 0;     ///< OpenGL's; another when a table of another shape is set
+    std::string layout;    ///< "cube", "dual-paraboloid" or "octahedral" (math/table_layout.h)
+    int size = 0;          ///< texels along the side of a face, without a border
+    int layers = 0;        ///< groups of a colour
+    bool hasMean = false;  ///< of techniques that read weights, and of PreconvolvedAo, which has no more
+    int imagesPerGroup = 1;
+};
+
 /// Where tables of blended environments are made.
 enum class BlendOn {
     Cpu,  ///< environments are blended, then their table is built and uploaded
@@ -96,6 +111,14 @@ class Renderer {
     /// How often the technique was given a table or light: the same number, the same light.
     /// @throws InputError  the technique was not added
     uint64_t lightRevision(Technique technique) const;
+    /// The table of the technique's present light, to be read by shaders of the caller's: valid until the
+    /// technique is added again, or the renderer is destroyed; its texels change with the light.
+    /// @throws InputError  the technique was not added, takes no table, or has none yet
+    TableTexture tableTexture(Technique technique) const;
+    /// Lines for runtime/shader_sources.h with which light.frag and table.glsl fit the technique and the
+    /// table or uniforms that it has at present.
+    /// @throws InputError  the technique was not added, or has no light
+    std::string shaderDefines(Technique technique) const;
     /// Lights besides the tables', for every technique; replaces the previous ones. Each adds its irradiance
     /// × max(0, n·direction) × shadow.
     /// @param grid  of the shadows: that of the visibility or PCA data

@@ -51,6 +51,8 @@ class TechniqueData {
 
     /// @throws InputError  no light was set
     void checkLight() const;
+    /// Of light.frag, once there is light.
+    const std::string& defines() const { return program_->defines(); }
     /// Tables, uniforms or lightmaps that were set so far.
     uint64_t lightRevision() const { return lightRevision_; }
     int shOrder() const { return shOrder_; }

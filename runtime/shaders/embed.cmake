@@ -6,7 +6,7 @@ foreach(path IN LISTS SHADERS)
   string(APPEND entries "    {\"${name}\", R\"GLSL(${text})GLSL\"},\n")
 endforeach()
 file(WRITE "${OUTPUT}" "// Made from runtime/shaders; edit those.
-#include \"runtime/shader_library.h\"
+#include \"runtime/shader_sources.h\"
 
 namespace prt {
 

@@ -21,7 +21,6 @@ layout(binding = 1) uniform SURFACES normals;
 layout(binding = 2) uniform SURFACES albedos;
 layout(binding = 3) uniform TRIANGLES triangles;
 layout(binding = 4) uniform sampler2DArray coefficients;  // [layers], four coefficients each
-layout(binding = 5) uniform sampler2DArray table;         // [3·layers (+ 1)] images of the layout
 layout(binding = 6) uniform usamplerBuffer indices;
 layout(binding = 7) uniform sampler2DArray sunShadows;  // four suns to a layer
 
@@ -32,40 +31,8 @@ uniform vec3 sunDirection[8], sunIrradiance[8];
 layout(location = 0) out vec4 outRadiance;
 layout(location = 1) out vec4 outIrradiance;
 
-// Images that one group of four coefficients has, and where a normal falls on: the point in [0, 1]² and which of
-// these images. Layouts as in math/table_layout.h.
-// TABLE_SIZE: texels along the side of a face, without a border; TABLE_LAYERS: groups of a colour. Constants, so
-// that loops over them are unrolled.
 #ifdef TABLE_SIZE
-#if defined(TABLE_DUAL_PARABOLOID)
-const int kGroupImages = 1;
-
-vec3 tablePoint(vec3 normal) {
-    const vec3 st = dualParaboloidPoint(normal);
-    const float size = float(TABLE_SIZE);
-    const vec2 texel = 0.5 + (0.5 * st.xy + 0.5) * (size - 1.0);
-    return vec3((st.z * size + texel.x) / (2.0 * size), texel.y / size, 0.0);
-}
-#elif defined(TABLE_OCTAHEDRAL)
-const int kGroupImages = 1;
-
-vec3 tablePoint(vec3 normal) {
-    const vec2 texel = 1.0 + (0.5 * octahedralPoint(normal) + 0.5) * float(TABLE_SIZE);
-    return vec3(texel / float(TABLE_SIZE + 2), 0.0);
-}
-#else
-const int kGroupImages = 6;  // each within a border of one texel of its neighbours
-
-vec3 tablePoint(vec3 normal) {
-    vec2 point;
-    const int face = cubeFace(normal, point);
-    return vec3(((point * 0.5 + 0.5) * float(TABLE_SIZE) + 1.0) / float(TABLE_SIZE + 2), face);
-}
-#endif
-
-vec4 tableAt(vec3 point, int group) {
-    return textureLod(table, vec3(point.xy, float(kGroupImages * group) + point.z), 0.0);
-}
+#include "table.glsl"
 #endif
 
 #ifdef PER_VERTEX
@@ -194,19 +161,15 @@ vec3 irradianceAt(Points points, vec3 n) { return vec3(1.0); }
 #elif defined(POINT_COLOURS)
 vec3 irradianceAt(Points points, vec3 n) { return valuesAt(coefficients, points, 0).rgb; }
 #elif defined(PRECONVOLVED)
-vec3 irradianceAt(Points points, vec3 n) { return valuesAt(coefficients, points, 0).r * tableAt(tablePoint(n), 0).rgb; }
+vec3 irradianceAt(Points points, vec3 n) { return valuesAt(coefficients, points, 0).r * tableMean(tablePoint(n)); }
 #else
 vec3 irradianceAt(Points points, vec3 n) {
     const vec3 normal = tablePoint(n);
     vec3 sum = vec3(0.0);
 #ifdef WITH_MEAN
-    sum += tableAt(normal, 3 * TABLE_LAYERS).rgb;
+    sum += tableMean(normal);
 #endif
-    for (int i = 0; i < TABLE_LAYERS; ++i) {
-        const vec4 k = valuesAt(coefficients, points, i);
-        sum += vec3(dot(k, tableAt(normal, i)), dot(k, tableAt(normal, TABLE_LAYERS + i)),
-                    dot(k, tableAt(normal, 2 * TABLE_LAYERS + i)));
-    }
+    for (int i = 0; i < TABLE_LAYERS; ++i) sum += tableSum(normal, i, valuesAt(coefficients, points, i));
     return sum;
 }
 #endif

@@ -3,7 +3,7 @@
 #include "precompute/base/error.h"
 #include "runtime/gl_functions.h"
 #include "runtime/gl_objects.h"
-#include "runtime/shader_library.h"
+#include "runtime/shader_sources.h"
 
 namespace prt {
 namespace {
@@ -64,7 +64,7 @@ TEST(GlFunctions, MissingFunctionIsNamed) {
 
 TEST(Shaders, AllAreCarriedAndCompile) {
     GlContext context;
-    EXPECT_EQ(shaderSources().size(), 12u);
+    EXPECT_EQ(shaderSources().size(), 13u);
     const std::string table = "#define TABLE_LAYERS 2\n#define TABLE_SIZE 4\n";
     for (const std::string defines :
          {"", "#define PER_VERTEX\n", "#define WITH_MEAN\n", "#define MULTISAMPLED\n"})
@@ -74,6 +74,17 @@ TEST(Shaders, AllAreCarriedAndCompile) {
     EXPECT_NO_THROW(GlProgram(context.gl(), "screen.vert", "display.frag", ""));
     EXPECT_NO_THROW(GlProgram(context.gl(), "blend.vert", "blend.frag", "#define SOURCES 2\n", "blend.geom"));
     EXPECT_NO_THROW(context.check("compiling"));
+}
+
+TEST(Shaders, IncludesAreReplaced) {
+    const std::string text =
+        shaderWithIncludes("#include \"tone_curve.glsl\"\nvoid main() {}", "#define A\n");
+    EXPECT_TRUE(text.starts_with("#version 450 core\n#define A\n"));
+    EXPECT_THAT(text, HasSubstr("vec3 toneMapped("));
+    EXPECT_THAT(text, testing::EndsWith("\nvoid main() {}"));
+    EXPECT_EQ(text.find("#include"), std::string::npos);
+    EXPECT_THROW(shaderWithIncludes("#include \"absent.glsl\"\n", ""), InputError);
+    EXPECT_THROW(shaderText("absent.frag", ""), InputError);
 }
 
 TEST(Shaders, CompilerLogReachesTheMessage) {

@@ -1,22 +1,21 @@
 // Sources: none; plain text, with the #include that GLSL lacks.
-#include "runtime/shader_library.h"
+#include "runtime/shader_sources.h"
 
 #include <algorithm>
 #include <string_view>
 
-#include "precompute/base/check.h"
+#include "precompute/base/error.h"
 
 namespace prt {
 namespace {
 
-const char* findShader(std::string_view name) {
+std::string_view findShader(std::string_view name) {
     for (const ShaderSource& source : shaderSources())
         if (name == source.name) return source.text;
-    return nullptr;
+    throw InputError("shader " + std::string(name), "there is no such file", "runtime/shaders has them");
 }
 
-// Puts the text of files in place of lines `#include "name"`.
-std::string withIncludes(std::string_view text) {
+std::string included(std::string_view text) {
     constexpr std::string_view kInclude = "#include \"";
     std::string all;
     for (size_t at = 0; at < text.size();) {
@@ -24,9 +23,7 @@ std::string withIncludes(std::string_view text) {
         const std::string_view line = text.substr(at, end - at);
         if (line.starts_with(kInclude)) {
             const std::string_view rest = line.substr(kInclude.size());
-            const char* included = findShader(rest.substr(0, rest.find('"')));
-            PRT_CHECK(included != nullptr);
-            all += withIncludes(included);
+            all += included(findShader(rest.substr(0, rest.find('"'))));
         } else {
             all += line;
         }
@@ -37,11 +34,16 @@ std::string withIncludes(std::string_view text) {
 
 }  // namespace
 
-std::string shaderText(const std::string& name, const std::string& defines) {
-    const char* common = findShader("common.glsl");
-    const char* text = findShader(name);
-    PRT_CHECK(common && text);
-    return "#version 450 core\n" + defines + common + "#line 1\n" + withIncludes(text);
+std::string shaderWithIncludes(std::string_view text, std::string_view defines) {
+    std::string all = "#version 450 core\n";
+    all += defines;
+    all += findShader("common.glsl");
+    all += "#line 1\n";
+    return all + included(text);
+}
+
+std::string shaderText(std::string_view name, std::string_view defines) {
+    return shaderWithIncludes(findShader(name), defines);
 }
 
 }  // namespace prt
