@@ -305,6 +305,21 @@ TEST_F(View, DrawsOnlyWhatChanged) {
     EXPECT_EQ(largestDifference(large, load("scene.png")), 0);
 }
 
+// Clicks down the panel's left column, wherever its parts are: switches switch, lists open and are chosen
+// from.
+TEST_F(View, PanelIsUsedWithTheMouse) {
+    std::string script = "resize 640 560\nreport\n";
+    for (int y = 60; y < 540; y += 12) script += "click 356 " + std::to_string(y) + "\nreport\n";
+    script += "drag left 420 98 470 98\nreport\nquit\n";
+    const auto reports = play(script, {"--technique", "unc"});
+    ASSERT_GT(reports.size(), 40u);
+    std::set<std::string> changed;
+    for (size_t i = 1; i < reports.size(); ++i)
+        for (const auto& [key, value] : reports[i].items())
+            if (value != reports[i - 1][key]) changed.insert(key);
+    for (const char* key : {"normal_map", "samples", "weights"}) EXPECT_TRUE(changed.contains(key)) << key;
+}
+
 TEST_F(View, ScreenshotsAreNumberedAndNothingElseIsWritten) {
     fs::create_directory(folder_ / "shots");
     folder_.write("shots/prt-view-0002.png", "mine");

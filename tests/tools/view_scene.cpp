@@ -41,6 +41,12 @@ TEST(PointColours, SignedScaleEndsAtTheLargestMagnitude) {
     EXPECT_LT((colourOf(colours, 2) - (0.75f * white + 0.25f * positive)).norm(), 1e-6f);
     EXPECT_LT((colourOf(colours, 3) - positive).norm(), 1e-6f);
     EXPECT_EQ(colourOf(colours, 4), Vec3f(0, 0, 0));
+    std::vector<float> many(1000, 0.5f);
+    many[3] = -80;  // sticks out
+    const PointColours clipped = signedColours(grid(1000, 1), many, 1, {}, "clipped");
+    EXPECT_EQ(clipped.legend[2].text, ">= 0.5");
+    EXPECT_LT((colourOf(clipped, 3) - negative).norm(), 1e-6f);
+    EXPECT_LT((colourOf(clipped, 4) - positive).norm(), 1e-6f);
     const PointColours flat = signedColours(grid(1, 1), std::vector<float>{0}, 1, {}, "flat");
     EXPECT_EQ(colourOf(flat, 0), white);
 }

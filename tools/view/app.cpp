@@ -80,7 +80,8 @@ class Viewer {
     void playChoice(const ScriptStep& step);
     void answer();
     void present();
-    void drawScene();
+    void drawScene(bool still = false);
+    int coarseness(double lastMs) const;
     void updatePanel();
     void followReference();
     void waitForReference(const ScriptStep& step);
@@ -104,6 +105,7 @@ class Viewer {
     std::optional<ViewState> drawn_;  // what stands in the scene's image
     WindowSize drawnSize_;
     bool drawnMoving_ = false;
+    int part_ = 1;       // of the window's sides that was drawn
     bool dirty_ = true;  // something happened since the window was shown last
     int windows_ = 0, screenshots_ = 0;
 };
@@ -312,21 +314,33 @@ void Viewer::answer() {
 }
 
 void Viewer::screenshot(const std::filesystem::path& path) {
-    drawScene();
+    drawScene(true);
     writePng(path, scene_.image());
     ++screenshots_;
 }
 
-void Viewer::drawScene() {
+// still: a picture to keep, even in the middle of a drag.
+void Viewer::drawScene(bool still) {
     const WindowSize size = window_.size();
-    const bool moving = input_.isDragging() || input_.isFlying();
+    const bool moving = !still && (input_.isDragging() || input_.isFlying());
     ViewState wanted = state_;
     wanted.panel = wanted.help = false;
     if (drawn_ == wanted && drawnSize_ == size && drawnMoving_ == moving && !options_.measureFrames) return;
-    scene_.draw(state_, std::max(size.pixelWidth, 1), std::max(size.pixelHeight, 1), moving);
+    const int part = moving ? coarseness(scene_.statistics().frameMs) : 1;
+    scene_.draw(state_, std::max(size.pixelWidth / part, 1), std::max(size.pixelHeight / part, 1), moving);
+    part_ = part;
     drawn_ = wanted;
     drawnSize_ = size;
     drawnMoving_ = moving;
+}
+
+// Where frames are slow, what moves is drawn at a half or a quarter of the size: the hand matters more then.
+int Viewer::coarseness(double lastMs) const {
+    constexpr double kSlowMs = 80, kFastMs = 15;
+    if (options_.measureFrames) return 1;
+    if (lastMs > kSlowMs) return std::min(2 * part_, 4);
+    if (lastMs < kFastMs) return std::max(part_ / 2, 1);
+    return part_;
 }
 
 void Viewer::present() {
@@ -363,6 +377,10 @@ Report Viewer::report() const {
         .set("show", shownName(state_.shown))
         .setJson("eye", vector(camera.eye))
         .setJson("target", vector(camera.target))
+        .set("normal_map", state_.normalMap)
+        .set("background", state_.background)
+        .set("samples", state_.samples)
+        .set("tone", std::string(toneCurveName(state_.toneCurve)))
         .set("rotate_deg", state_.rotationRad * kDegreesPerRad)
         .set("exposure_stops", statistics.exposureStops)
         .set("width", scene_.width())

@@ -116,7 +116,8 @@ void pictureSection(const ViewStatistics& statistics, ViewState& state) {
 
 void statisticsSection(const SceneView& scene, const PanelFacts& facts) {
     const ViewStatistics& statistics = scene.statistics();
-    row("frame", fmt::format("{:.1f} ms, {} x {}", statistics.frameMs, scene.width(), scene.height()));
+    row("frame", fmt::format("{:.1f} ms", statistics.frameMs));
+    row("pixels", fmt::format("{} x {}", scene.width(), scene.height()));
     if (facts.framesPerSecond > 0) row("frames", fmt::format("{:.1f} a second", facts.framesPerSecond));
     row("light switch", fmt::format("{:.2f} ms", statistics.switchMs));
     row("a pixel takes", fmt::format("{} fetches", statistics.cost.fetches));

@@ -15,6 +15,7 @@
 namespace prt::tools {
 namespace {
 
+constexpr double kShareInScale = 0.99;  // of the points that have a surface
 const Vec3f kNegative(0.02f, 0.15f, 0.80f), kZero(1, 1, 1), kPositive(0.75f, 0.06f, 0.02f);
 
 Vec3f signedColour(float value) {
@@ -112,16 +113,26 @@ PointColours signedColours(const PointGrid& grid, std::span<const float> values,
     PRT_CHECK(grid.count == 0 || (grid.count - 1) * stride < values.size());
     PRT_CHECK(validity.empty() || validity.size() == grid.count);
     const auto counts = [&](size_t i) { return validity.empty() || validity[i] != Validity::Empty; };
-    float largest = 0;
+    std::vector<float> sizes;
     for (size_t i = 0; i < grid.count; ++i)
-        if (counts(i)) largest = std::max(largest, std::abs(values[i * stride]));
+        if (counts(i)) sizes.push_back(std::abs(values[i * stride]));
+    // A few points that stick out would leave all others white.
+    float end = 0, largest = 0;
+    if (!sizes.empty()) {
+        const auto at = sizes.begin() + std::ptrdiff_t(std::ceil(kShareInScale * double(sizes.size())) - 1);
+        std::ranges::nth_element(sizes, at);
+        end = *at;
+        largest = *std::ranges::max_element(at, sizes.end());
+        if (end == 0) end = largest;
+    }
     PointColours colours{grid, {}, true, std::move(title), {}, true};
     colours.rgb.assign(grid.count * 3, 0.0f);
     for (size_t i = 0; i < grid.count; ++i)
-        if (counts(i)) put(colours.rgb, i, signedColour(largest > 0 ? values[i * stride] / largest : 0));
-    colours.legend = {{kNegative, fmt::format("{:.3g}", -largest)},
+        if (counts(i)) put(colours.rgb, i, signedColour(end > 0 ? values[i * stride] / end : 0));
+    const bool beyond = largest > end;
+    colours.legend = {{kNegative, fmt::format("{}{:.3g}", beyond ? "<= " : "", -end)},
                       {kZero, "0"},
-                      {kPositive, fmt::format("{:.3g}", largest)}};
+                      {kPositive, fmt::format("{}{:.3g}", beyond ? ">= " : "", end)}};
     return colours;
 }
 

@@ -27,7 +27,7 @@ struct PointColours {
 /// Colours of one number per point: blue where it is negative, white at 0, red where it is positive.
 /// @param values    [points], `stride` apart
 /// @param validity  [points] or empty: points without surface do not count for the scale and are black
-/// @return the ends of the scale are ± the largest magnitude
+/// @return the ends of the scale are ± the magnitude that 99 % of the points stay within
 PointColours signedColours(const PointGrid& grid, std::span<const float> values, size_t stride,
                            std::span<const Validity> validity, std::string title);
 
