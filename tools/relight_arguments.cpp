@@ -76,6 +76,9 @@ void RelightArguments::addTo(CommandLine& line) {
     line.integer("--samples", samples, 1, 4, "of a pixel: 1, or 4 for smooth edges");
     line.text("--exposure", exposureText, "STOPS|auto", "brightness of .png output");
     line.choice("--tone", toneText, {"none", "filmic", "neutral"}, "tone curve of .png output and videos");
+    line.choice(
+        "--blend", blendText, {"cpu", "gpu"},
+        "where tables of several environments are blended: before they are made, or from one of each");
     line.text("--eye", eyeText, "X,Y,Z", "camera position; else it is placed by the next three");
     line.text("--target", targetText, "X,Y,Z", "point looked at; else the middle of the scene");
     line.real("--azimuth", azimuthDeg, -1e6, 1e6,
@@ -200,6 +203,7 @@ void RelightArguments::finish() {
     if (samples > 1 && (compareReference || reference))
         throw UsageError("--samples", "the reference has one sample to a pixel", "leave out one of the two");
     toneCurve = toneCurveFromName(toneText).value();
+    blendOn = blendText == "gpu" ? BlendOn::Gpu : BlendOn::Cpu;
     parseSequence();
     checkOutputs();
     float unused[3];

@@ -10,6 +10,7 @@
 #include "precompute/io/image.h"
 #include "precompute/io/scene.h"
 #include "precompute/io/surface_image.h"
+#include "runtime/renderer.h"
 #include "runtime/technique.h"
 #include "tools/context_arguments.h"
 
@@ -35,7 +36,7 @@ struct RelightArguments {
     std::string sizeText = "1280x800";
     std::string output, referenceOutput, differenceOutput;
     std::string exposureText = "0";
-    std::string eyeText, targetText, toneText = "none", transitionText;
+    std::string eyeText, targetText, toneText = "none", blendText = "cpu", transitionText;
     int samples = 1;
     int turntableFrames = 0, rotateLightFrames = 0;  ///< 0: no such motion
     double framesPerSecond = 25;
@@ -52,6 +53,7 @@ struct RelightArguments {
     ContextArguments context;
     int width = 0, height = 0;
     ToneCurve toneCurve = ToneCurve::None;
+    BlendOn blendOn = BlendOn::Cpu;
     std::string transitionEnds;           ///< "A:B" of --transition
     int transitionFrames = 0;             ///< 0: none
     std::optional<double> exposureStops;  ///< empty: chosen from the picture

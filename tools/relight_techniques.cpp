@@ -161,7 +161,7 @@ const char* RelightTechniques::setLight(Renderer& renderer, Technique technique,
 const char* RelightTechniques::makeLight(Renderer& renderer, Technique used,
                                          const std::vector<double>& weights, double rotationRad) {
     const bool all = used == Technique::Unc || used == Technique::Pca || used == Technique::VertexPca;
-    if (rotationRad == 0 && all) {
+    if (rotationRad == 0 && all && arguments_.blendOn == BlendOn::Cpu) {
         const TableKind kind = used == Technique::Unc ? TableKind::LightCosine : TableKind::TripleProduct;
         if (const auto table = blendStored(kind, weights)) {
             renderer.setTable(used, *table);
@@ -175,7 +175,7 @@ const char* RelightTechniques::makeLight(Renderer& renderer, Technique used,
         return "bundle";
     }
     if (!live_) live_.emplace(data_.environments, data_.shOrder, arguments_.tables);
-    renderer.setLight(used, *live_, weights, rotationRad);
+    renderer.setLight(used, *live_, weights, rotationRad, arguments_.blendOn);
     return "built";
 }
 

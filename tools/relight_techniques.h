@@ -44,7 +44,7 @@ struct RelightData {
 RelightData loadRelightData(const RelightArguments& arguments);
 
 /// Adds the techniques to a renderer and gives each its light: tables from the bundle when all of them are
-/// there, current and of the right environments; else made here.
+/// there, current and of the right environments; else made here. Where the GPU blends, all are made here.
 class RelightTechniques {
   public:
     /// Arguments must outlive the object.

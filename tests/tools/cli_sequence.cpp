@@ -97,6 +97,8 @@ TEST_F(SequenceCommand, TransitionsGoFromOneToTheOther) {
     EXPECT_LT(difference("t0001.png", "b.png"), kSame);
     EXPECT_LT(difference("t0002.png", "c.png"), kSame);
     EXPECT_GT(difference("a.png", "c.png"), kOther);
+    draw(with({"--transition", "clear:1:3", "-o", "g{frame}.png", "--blend", "gpu"}));
+    EXPECT_LT(difference("t0001.png", "g0001.png"), 0.001);
     for (const char* wrong : {"clear:dawn:3", "1:4:3", "0:1:3", "clear:3:3"}) {
         const ProcessResult result = relight(with({"--transition", wrong, "-o", "no{frame}.png"}));
         EXPECT_EQ(result.exitCode, 2) << wrong;
