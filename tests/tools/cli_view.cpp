@@ -169,9 +169,10 @@ TEST_F(View, DragsTurnCameraAndLight) {
     const auto reports = play(
         "key Tab\nreport\ndrag left 40 90 80 75\nscreenshot orbit.png\nreport\n"
         "drag right 80 60 50 60\nscreenshot light.png\nreport\n"
-        "drag middle 40 40 60 50\nscroll 1\nscreenshot moved.png\nreport\nkey R\nreport\nquit\n",
+        "drag middle 40 40 60 50\nscroll 1\nscreenshot moved.png\nreport\nkey R\nreport\n"
+        "doubleclick 80 75\nreport\nhold W 1\nreport\nquit\n",
         {"--technique", "unc"});
-    ASSERT_EQ(reports.size(), 5u);
+    ASSERT_EQ(reports.size(), 7u);
     // A drag over the height of the window, 120, is half a turn.
     const ByteImage orbit = relight("a.png", {"--technique", "unc", "--size", "160x120", "--azimuth", "-40",
                                               "--elevation", "27.5", "--distance", "0.9"});
@@ -198,6 +199,23 @@ TEST_F(View, DragsTurnCameraAndLight) {
     EXPECT_LE(differing(load("moved.png"), relight("c.png", moved)), 4u);
     EXPECT_EQ(reports[4]["eye"], reports[0]["eye"]);
     EXPECT_EQ(reports[4]["rotate_deg"], 0.0);
+    // A double click looks at what is there: the floor, or the inside of a wall.
+    const auto of = [](const nlohmann::json& vector, size_t i) { return vector[i].get<double>(); };
+    const nlohmann::json target = reports[5]["target"];
+    const double away = std::min({std::abs(of(target, 1)), std::abs(std::abs(of(target, 0)) - 1),
+                                  std::abs(std::abs(of(target, 2)) - 1)});
+    EXPECT_LT(away, 1e-4) << target;
+    EXPECT_NE(target, reports[4]["target"]);
+    for (size_t i = 0; i < 3; ++i) EXPECT_NEAR(of(reports[5]["eye"], i), of(reports[4]["eye"], i), 1e-4);
+    // Flying takes eye and target along, level.
+    double moved2 = 0;
+    for (size_t i = 0; i < 3; ++i) {
+        const double step = of(reports[6]["target"], i) - of(target, i);
+        EXPECT_NEAR(of(reports[6]["eye"], i) - of(reports[5]["eye"], i), step, 1e-4);
+        moved2 += step * step;
+    }
+    EXPECT_GT(moved2, 0.25);
+    EXPECT_EQ(reports[6]["target"][1], target[1]);
 }
 
 TEST_F(View, StoredValuesAreShown) {

@@ -170,12 +170,13 @@ bool SceneView::State::setLight(const ViewState& view, bool moving) {
     const Light light{technique, weights, view.rotationRad};
     const bool changed = lit != light;
     statistics.problem.clear();
-    const Stopwatch watch;
+    Stopwatch watch;
     try {
         // Only what is looked at is reduced and uploaded.
         if (added.insert(techniques.drawn(technique)).second) {
             data.techniques = {technique};
             techniques.addTo(renderer);
+            watch = {};
         }
         techniques.setLight(renderer, technique, weights, view.rotationRad);
         // Shadows of a turned sun are traced: not in the middle of a drag.
