@@ -30,9 +30,9 @@ TEST(FrameTime, SpreadInterpolatesBetweenSortedValues) {
 
 // A machine that is half as fast in some rounds: times differ by two, ratios do not.
 TEST(FrameTime, RatiosDoNotSeeASlowMachine) {
-    FrameSamples samples{{}, {{}, {}}};
+    FrameSamples samples{{{}, {}}, {{}, {}}};
     for (const double slow : {1.0, 2.0, 1.0, 2.0, 2.0}) {
-        samples.base.push_back(10 * slow);
+        for (std::vector<double>& base : samples.base) base.push_back(10 * slow);
         samples.techniques[0].push_back(14 * slow);
         samples.techniques[1].push_back(26 * slow);
     }

@@ -12,16 +12,17 @@ namespace prt::tools {
 FrameSamples sampleFrames(Renderer& renderer, const Camera& camera, const RenderOptions& options,
                           const std::vector<Technique>& techniques, int rounds) {
     PRT_CHECK_LE(1, rounds);
-    FrameSamples samples{{}, std::vector<std::vector<double>>(techniques.size())};
+    const std::vector<std::vector<double>> none(techniques.size());
+    FrameSamples samples{none, none};
     const auto draw = [&](std::optional<Technique> technique) {
         return renderer.frameMilliseconds(camera, technique, options, 1, 0);
     };
     draw(std::nullopt);  // shaders are compiled for the state they meet first
     for (const Technique technique : techniques) draw(technique);
     for (int round = 0; round < rounds; ++round) {
-        samples.base.push_back(draw(std::nullopt));
         for (size_t i = 0; i < techniques.size(); ++i) {
             const size_t next = (size_t(round) + i) % techniques.size();
+            samples.base[next].push_back(draw(std::nullopt));
             samples.techniques[next].push_back(draw(techniques[next]));
         }
     }
@@ -41,18 +42,24 @@ Spread spreadOf(std::vector<double> values) {
 
 FrameTimes summarizeFrames(const FrameSamples& samples, std::optional<size_t> reference) {
     constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-    FrameTimes times{spreadOf(samples.base), {}};
-    for (const std::vector<double>& frames : samples.techniques) {
-        PRT_CHECK_EQ(frames.size(), samples.base.size());
-        std::vector<double> light, ratios;
-        for (size_t round = 0; round < frames.size(); ++round) {
-            light.push_back(frames[round] - samples.base[round]);
-            if (!reference) continue;
-            const double unit = samples.techniques[*reference][round] - samples.base[round];
-            // A base pass that was disturbed may exceed a technique's frame: such a round says nothing.
-            if (unit > 0) ratios.push_back(light.back() / unit);
-        }
-        times.techniques.push_back({spreadOf(frames).median, spreadOf(light),
+    PRT_CHECK_EQ(samples.base.size(), samples.techniques.size());
+    FrameTimes times;
+    std::vector<std::vector<double>> light(samples.base.size());
+    std::vector<double> base;
+    for (size_t i = 0; i < light.size(); ++i) {
+        PRT_CHECK_EQ(samples.base[i].size(), samples.techniques[i].size());
+        base.insert(base.end(), samples.base[i].begin(), samples.base[i].end());
+        for (size_t round = 0; round < samples.base[i].size(); ++round)
+            light[i].push_back(samples.techniques[i][round] - samples.base[i][round]);
+    }
+    times.baseMs = spreadOf(std::move(base));
+    for (size_t i = 0; i < light.size(); ++i) {
+        std::vector<double> ratios;
+        for (size_t round = 0; reference && round < light[i].size(); ++round)
+            // A base pass that was disturbed may exceed its frame: such a round says nothing.
+            if (const double unit = light[*reference][round]; unit > 0)
+                ratios.push_back(light[i][round] / unit);
+        times.techniques.push_back({spreadOf(samples.techniques[i]).median, spreadOf(light[i]),
                                     ratios.empty() ? Spread{kNone, kNone, kNone} : spreadOf(ratios)});
     }
     return times;

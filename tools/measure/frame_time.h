@@ -13,10 +13,10 @@
 
 namespace prt::tools {
 
-/// Frames of one size, in milliseconds. Round k drew the base pass and every technique once, one right after
-/// another.
+/// Frames of one size, in milliseconds. Every round drew every technique once, each right after a base pass
+/// of its own: what a machine does besides falls on both alike.
 struct FrameSamples {
-    std::vector<double> base;                     ///< [rounds]
+    std::vector<std::vector<double>> base;        ///< [techniques][rounds]
     std::vector<std::vector<double>> techniques;  ///< [techniques][rounds]
 };
 
@@ -37,7 +37,7 @@ Spread spreadOf(std::vector<double> values);
 
 struct TechniqueTime {
     double frameMs = 0;  ///< median of whole frames
-    Spread lightMs;      ///< of the same frames less the base pass of their round
+    Spread lightMs;      ///< of the same frames less the base pass right before each
     Spread ratio;        ///< of lightMs in each round to that of the reference technique; NaN without one
 };
 struct FrameTimes {
