@@ -338,6 +338,24 @@ TEST_F(View, PanelIsUsedWithTheMouse) {
     for (const char* key : {"normal_map", "samples", "weights"}) EXPECT_TRUE(changed.contains(key)) << key;
 }
 
+TEST_F(View, LightThatIsNotThereIsSaid) {
+    prt({"lightmap", "box.prt", "--env", "sky:sunset", "--bounces", "1", "--rays", "64"});
+    prt({"lightmap", "box.prt", "--env", "sky:clear", "--bounces", "1", "--rays", "64"});
+    const auto reports = play(
+        "technique sh-lightmap\nscreenshot map.png\nreport\nrotate 10\nscreenshot turned.png\nreport\n"
+        "technique unc\nscreenshot unc.png\nreport\nrotate 0\ntechnique sh-lightmap\nscreenshot "
+        "again.png\nreport\nquit\n");
+    ASSERT_EQ(reports.size(), 4u);
+    EXPECT_FALSE(reports[0].contains("problem"));
+    EXPECT_LE(largestDifference(load("map.png"), relightFirst("a.png", {"--technique", "sh-lightmap"})), 2);
+    ASSERT_TRUE(reports[1].contains("problem"));
+    EXPECT_THAT(reports[1]["problem"].get<std::string>(), HasSubstr("prt lightmap"));
+    EXPECT_EQ(colours(load("turned.png")).size(), 1u) << "black";
+    EXPECT_FALSE(reports[2].contains("problem"));
+    EXPECT_GT(colours(load("unc.png")).size(), 100u);
+    EXPECT_EQ(largestDifference(load("again.png"), load("map.png")), 0);
+}
+
 TEST_F(View, ScreenshotsAreNumberedAndNothingElseIsWritten) {
     fs::create_directory(folder_ / "shots");
     folder_.write("shots/prt-view-0002.png", "mine");

@@ -392,6 +392,7 @@ Report Viewer::report() const {
         .set("light_switch_ms", statistics.switchMs)
         .set("frame_ms", statistics.frameMs)
         .set("screenshots", screenshots_);
+    if (!statistics.problem.empty()) report.set("problem", statistics.problem);
     if (statistics.relativeRmse) report.set("relative_rmse", *statistics.relativeRmse);
     return report;
 }

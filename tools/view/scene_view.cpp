@@ -2,6 +2,8 @@
 // reference.
 #include "tools/view/scene_view.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <set>
@@ -134,9 +136,14 @@ ViewState SceneView::startState() const {
 
 void SceneView::State::resize(int width, int height) {
     if (canvas.width == width && canvas.height == height) return;
-    canvas = {};
+    PRT_CHECK(width >= 1 && height >= 1);
     const GLint edge = glInteger(gl, GL_MAX_TEXTURE_SIZE);
-    PRT_CHECK(width >= 1 && height >= 1 && width <= edge && height <= edge);
+    if (width > edge || height > edge)
+        throw InputError(
+            "window",
+            fmt::format("{}x{} pixels are more than the {} that OpenGL takes here", width, height, edge),
+            "make it smaller");
+    canvas = {};
     canvas.image = makeImage(gl, GL_RGBA8, width, height);
     canvas.framebuffer = makeFramebufferOver(gl, {canvas.image.name()}, 0);
     canvas.width = width;
