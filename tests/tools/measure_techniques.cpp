@@ -182,7 +182,7 @@ TEST(TechniqueFields, StraysDoNotSetTheScale) {
     validity[4] = Validity::Empty;
     const auto cells = fieldPictures(renderer, Camera{}, grid, values, validity, {"v"}, 256);
     ASSERT_EQ(cells.size(), 1u);
-    EXPECT_EQ(cells[0].note, "-1 to 1");
+    EXPECT_EQ(cells[0].note, "<= -1 to >= 1");
     const ByteImage& image = cells[0].image;
     ASSERT_EQ(image.width, 32);
     for (int c = 0; c < 3; ++c) {

@@ -53,14 +53,19 @@ FrameTimes summarizeFrames(const FrameSamples& samples, std::optional<size_t> re
             light[i].push_back(samples.techniques[i][round] - samples.base[i][round]);
     }
     times.baseMs = spreadOf(std::move(base));
+    const double unit = reference ? spreadOf(light[*reference]).median : kNone;
     for (size_t i = 0; i < light.size(); ++i) {
+        TechniqueTime time{spreadOf(samples.techniques[i]).median, spreadOf(light[i]), {kNone, kNone, kNone}};
         std::vector<double> ratios;
         for (size_t round = 0; reference && round < light[i].size(); ++round)
             // A base pass that was disturbed may exceed its frame: such a round says nothing.
-            if (const double unit = light[*reference][round]; unit > 0)
-                ratios.push_back(light[i][round] / unit);
-        times.techniques.push_back({spreadOf(samples.techniques[i]).median, spreadOf(light[i]),
-                                    ratios.empty() ? Spread{kNone, kNone, kNone} : spreadOf(ratios)});
+            if (light[*reference][round] > 0) ratios.push_back(light[i][round] / light[*reference][round]);
+        if (unit > 0 && !ratios.empty()) {
+            time.ratio = spreadOf(std::move(ratios));
+            // The median of rounds' ratios is off where a few rounds were disturbed; that of medians is not.
+            time.ratio.median = time.lightMs.median / unit;
+        }
+        times.techniques.push_back(time);
     }
     return times;
 }

@@ -38,7 +38,9 @@ Spread spreadOf(std::vector<double> values);
 struct TechniqueTime {
     double frameMs = 0;  ///< median of whole frames
     Spread lightMs;      ///< of the same frames less the base pass right before each
-    Spread ratio;        ///< of lightMs in each round to that of the reference technique; NaN without one
+    /// lightMs to that of the reference technique: of the medians, and quartiles of the rounds' own; NaN
+    /// without one
+    Spread ratio;
 };
 struct FrameTimes {
     Spread baseMs;

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "precompute/base/check.h"
 #include "precompute/math/sh.h"
@@ -16,21 +15,6 @@ namespace {
 
 constexpr int kEdgePx = 256;
 constexpr size_t kWeightColumns = 6;
-
-// The values of one number of every point, cut to what kFieldQuantile of them are within.
-std::vector<float> clampedField(std::span<const float> values, size_t perPoint, size_t k, size_t points,
-                                std::span<const Validity> validity) {
-    std::vector<float> field(points), sizes;
-    for (size_t i = 0; i < points; ++i) {
-        field[i] = values[i * perPoint + k];
-        if (validity.empty() || validity[i] != Validity::Empty) sizes.push_back(std::abs(field[i]));
-    }
-    if (sizes.empty()) return field;
-    const auto place = sizes.begin() + ptrdiff_t(kFieldQuantile * double(sizes.size() - 1));
-    std::nth_element(sizes.begin(), place, sizes.end());
-    for (float& value : field) value = std::clamp(value, -*place, *place);
-    return field;
-}
 
 // Means of squares of pixels, so that it is at most so wide.
 FloatImage shrink(const FloatImage& image, int mostPx) {
@@ -71,8 +55,7 @@ std::vector<SheetCell> fieldPictures(Renderer& renderer, const Camera& camera, c
     PRT_CHECK_EQ(values.size(), grid.count * perPoint);
     std::vector<SheetCell> cells;
     for (size_t k = 0; k < perPoint; ++k) {
-        const std::vector<float> field = clampedField(values, perPoint, k, grid.count, validity);
-        const PointColours colours = signedColours(grid, field, 1, validity, labels[k]);
+        const PointColours colours = signedColours(grid, values.subspan(k), perPoint, validity, labels[k]);
         FloatImage image{grid.width, grid.height, 3, {}};
         if (grid.domain == PointDomain::Texel) {
             image.pixels = colours.rgb;

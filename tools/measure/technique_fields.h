@@ -12,12 +12,9 @@
 
 namespace prt::tools {
 
-/// Share of the points whose values lie within the scale of a picture: a few strays do not make it grey.
-inline constexpr double kFieldQuantile = 0.995;
-
 /// Pictures of `perPoint` numbers of every point, blue where negative, white at 0, red where positive: per
 /// texel the atlas, at most `edgePx` wide; per vertex the mesh as the camera sees it, edgePx wide. Each has
-/// its own scale, which the note says; texels without surface are black.
+/// its own scale (signedColours), which the note says; texels without surface are black.
 /// @param values    [grid.count×perPoint]
 /// @param validity  [grid.count] or empty: all have a surface
 /// @param labels    [perPoint]
