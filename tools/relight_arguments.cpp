@@ -36,7 +36,7 @@ void checkImageName(const std::string& option, const std::string& file) {
 }  // namespace
 
 std::string techniqueHelp() {
-    std::string text = "Techniques (unc and pca take any number that the bundle has):\n";
+    std::string text = "Techniques (unc, pca and vertex-pca take any number that the bundle has):\n";
     for (const Technique technique : listedTechniques())
         text += fmt::format("  {:<16} {}\n", techniqueName(technique), techniqueSummary(technique));
     return text + "  reference        ray tracing\n";

@@ -26,7 +26,8 @@ class RelightSuns {
     /// @param rotationRad  turn of the environments about the up axis
     /// @throws InputError  visibility.exr missing or stale
     std::vector<SunLight> make(const std::vector<double>& weights, double rotationRad);
-    /// Gives the renderer the suns of make(); does nothing where it was given just these last.
+    /// Gives the renderer, which outlives the object, the suns of make(); does nothing where it was given
+    /// just these last.
     /// @return suns that it has now
     size_t setTo(Renderer& renderer, const std::vector<double>& weights, double rotationRad);
     /// Of the points of the shadows; after make().

@@ -220,8 +220,9 @@ TEST_F(SequenceCommand, InterruptLeavesNoVideoAndNoProcess) {
     writeProgram(folder_, "ffmpeg", "echo $$ > bin/pid; exec sleep 60\n");
     folder_.write("bin/pid", "");
     const Words before = folder_.files();
-    const ProcessResult result = relight({"--turntable", "1000", "--size", "640x480", "-o", "a.mp4"},
-                                         kOwnPath + "( sleep 1.5; kill -INT $$ ) & exec");
+    const ProcessResult result =
+        relight({"--turntable", "1000", "--size", "640x480", "-o", "a.mp4"},
+                kOwnPath + "( while ! [ -s bin/pid ]; do sleep 0.1; done; kill -INT $$ ) & exec");
     EXPECT_EQ(result.exitCode, 130) << result.err;
     EXPECT_EQ(folder_.files(), before);
     const std::string pid = slurp(folder_ / "bin/pid");
