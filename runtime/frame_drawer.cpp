@@ -92,23 +92,23 @@ void FrameDrawer::setEnvironment(const GlProgram& program, const CameraFrame& ca
     gl_.BindTextureUnit(8, background_.name());
 }
 
-void FrameDrawer::drawLight(const CameraFrame& camera, const GlProgram& program, const LightPass& pass) {
-    const bool several = targets_->samples > 1, behind = pass.background && background_;
-    const GLuint frame = targets_->lightFrame.name();
-    const GLfloat black[4] = {};
-    gl_.BindFramebuffer(GL_DRAW_FRAMEBUFFER, frame);
-    gl_.DepthMask(GL_FALSE);
-    gl_.BindVertexArray(vertexArray_.name());
-    if (several) {
-        gl_.Disable(GL_DEPTH_TEST);
-        program.set("toneCurve", pass.shown ? int(pass.shown->toneCurve) : -1);
-        program.set("exposure", pass.shown ? float(std::exp2(pass.shown->exposureStops)) : 1.0f);
-        program.set("environments", int(behind));
+namespace {
+
+void setShown(const GlProgram& program, const DisplayOptions* shown) {
+    program.set("toneCurve", shown ? int(shown->toneCurve) : -1);
+    program.set("exposure", shown ? float(std::exp2(shown->exposureStops)) : 1.0f);
+}
+
+}  // namespace
+
+// Over the pixels that pass the depth test, with a program in use.
+void FrameDrawer::drawPixels(const GlProgram& program, const CameraFrame& camera,
+                             const LightPass& pass) const {
+    if (targets_->samples > 1) {
+        const bool behind = pass.background && background_;
+        setShown(program, pass.shown);
+        program.set("hasEnvironment", behind);
         if (behind) setEnvironment(program, camera);
-    } else {
-        gl_.ClearNamedFramebufferfv(frame, GL_COLOR, 0, black);
-        gl_.ClearNamedFramebufferfv(frame, GL_COLOR, 1, black);
-        gl_.DepthFunc(GL_LESS);  // than that of nothing, at which the screen's triangle lies
     }
     const size_t sunCount = pass.suns ? suns_.size() : 0;
     program.set("sunCount", int(sunCount));
@@ -123,11 +123,53 @@ void FrameDrawer::drawLight(const CameraFrame& camera, const GlProgram& program,
     for (const auto& [unit, image] : images)
         if (image != 0) gl_.BindTextureUnit(unit, image);
     gl_.DrawArrays(GL_TRIANGLES, 0, 3);
-    if (several || !behind) return;
-    gl_.DepthFunc(GL_EQUAL);
-    backgroundProgram_.use();
-    setEnvironment(backgroundProgram_, camera);
+}
+
+// Pixels of several samples get a depth by what they see, so that each kind has a pass of its own.
+void FrameDrawer::classify() {
+    if (!classesProgram_) classesProgram_.emplace(gl_, "screen.vert", "classes.frag", "");
+    gl_.BindFramebuffer(GL_DRAW_FRAMEBUFFER, targets_->classFrame.name());
+    gl_.DepthFunc(GL_ALWAYS);
+    classesProgram_->use();
+    gl_.BindTextureUnit(3, targets_->triangle.name());
+    gl_.BindVertexArray(vertexArray_.name());
     gl_.DrawArrays(GL_TRIANGLES, 0, 3);
+}
+
+void FrameDrawer::drawBackground(const CameraFrame& camera, const LightPass& pass) {
+    if (targets_->samples > 1 && !shownBackgroundProgram_)
+        shownBackgroundProgram_.emplace(gl_, "screen.vert", "background.frag", "#define MULTISAMPLED\n");
+    const GlProgram& program = targets_->samples > 1 ? *shownBackgroundProgram_ : backgroundProgram_;
+    program.use();
+    setShown(program, pass.shown);
+    setEnvironment(program, camera);
+    gl_.DrawArrays(GL_TRIANGLES, 0, 3);
+}
+
+void FrameDrawer::drawLight(const CameraFrame& camera, const std::function<const GlProgram&(Pixels)>& use,
+                            const LightPass& pass) {
+    const GLuint frame = targets_->lightFrame.name();
+    const GLfloat black[4] = {};
+    if (targets_->samples > 1) classify();
+    gl_.BindFramebuffer(GL_DRAW_FRAMEBUFFER, frame);
+    gl_.DepthMask(GL_FALSE);
+    gl_.BindVertexArray(vertexArray_.name());
+    gl_.ClearNamedFramebufferfv(frame, GL_COLOR, 0, black);
+    gl_.ClearNamedFramebufferfv(frame, GL_COLOR, 1, black);
+    if (targets_->samples > 1) {
+        gl_.DepthFunc(GL_EQUAL);
+        for (const auto& [pixels, depth] :
+             {std::pair(Pixels::OneTriangle, 0.25), std::pair(Pixels::Several, 0.5)}) {
+            gl_.DepthRangeIndexed(0, depth, depth);
+            drawPixels(use(pixels), camera, pass);
+        }
+        gl_.DepthRangeIndexed(0, 0, 1);
+    } else {
+        gl_.DepthFunc(GL_LESS);  // than that of nothing, at which the screen's triangle lies
+        drawPixels(use(Pixels::OneSample), camera, pass);
+        gl_.DepthFunc(GL_EQUAL);
+    }
+    if (pass.background && background_) drawBackground(camera, pass);
 }
 
 }  // namespace prt

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -13,6 +15,7 @@
 #include "runtime/frame_targets.h"
 #include "runtime/gl_context.h"
 #include "runtime/gl_objects.h"
+#include "runtime/light_program.h"
 #include "runtime/renderer.h"
 #include "runtime/scene_images.h"
 
@@ -49,10 +52,14 @@ class FrameDrawer {
     /// The images of the last begin().
     const FrameTargets& targets() const { return *targets_; }
     void drawSurface(const CameraFrame& camera, bool normalMap);
-    /// @param program  light.frag for the targets' samples, in use, with its own uniforms and textures set
-    void drawLight(const CameraFrame& camera, const GlProgram& program, const LightPass& pass);
+    /// @param use  brings light.frag for these pixels into use, with its own uniforms and textures set
+    void drawLight(const CameraFrame& camera, const std::function<const GlProgram&(Pixels)>& use,
+                   const LightPass& pass);
 
   private:
+    void classify();
+    void drawPixels(const GlProgram& program, const CameraFrame& camera, const LightPass& pass) const;
+    void drawBackground(const CameraFrame& camera, const LightPass& pass);
     void setEnvironment(const GlProgram& program, const CameraFrame& camera) const;
 
     const GlContext& context_;
@@ -66,6 +73,8 @@ class FrameDrawer {
     uint64_t uploads_ = 0;
     float backgroundRotationRad_ = 0;
     GlProgram backgroundProgram_;
+    /// Of several samples; made when first drawn with.
+    std::optional<GlProgram> shownBackgroundProgram_, classesProgram_;
     GlObject vertexArray_;
     std::unique_ptr<FrameTargets> single_, several_;
     FrameTargets* targets_ = nullptr;  // one of these

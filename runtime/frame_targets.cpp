@@ -33,11 +33,13 @@ FrameTargets::FrameTargets(const GlContext& context, int imageWidth, int imageHe
     triangle = makeSampledImage(gl, GL_R32UI, width, height, samples);
     depth = makeSampledImage(gl, GL_DEPTH_COMPONENT32F, width, height, samples);
     for (GlObject* image : {&radiance, &irradiance}) *image = makeImage(gl, GL_RGBA32F, width, height);
+    if (samples > 1) classes = makeImage(gl, GL_DEPTH_COMPONENT32F, width, height);
     context.check("making the image");
     surfaceFrame =
         makeFramebufferOver(gl, {place.name(), normal.name(), albedo.name(), triangle.name()}, depth.name());
-    lightFrame =
-        makeFramebufferOver(gl, {radiance.name(), irradiance.name()}, samples == 1 ? depth.name() : 0);
+    if (samples > 1) classFrame = makeFramebufferOver(gl, {}, classes.name());
+    lightFrame = makeFramebufferOver(gl, {radiance.name(), irradiance.name()},
+                                     samples > 1 ? classes.name() : depth.name());
 }
 
 }  // namespace prt

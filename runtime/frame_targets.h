@@ -15,8 +15,10 @@ struct FrameTargets {
     int width, height, samples;
     GlObject place, normal, albedo, triangle, depth;  ///< what is seen, by every sample
     GlObject radiance, irradiance;                    ///< of pixels
-    GlObject surfaceFrame;                            ///< over place, normal, albedo, triangle and depth
-    GlObject lightFrame;  ///< over radiance and irradiance, and over the depth if a pixel has one sample
+    GlObject classes;       ///< depth of pixels of several samples, by what they see (classes.frag)
+    GlObject surfaceFrame;  ///< over place, normal, albedo, triangle and depth
+    GlObject classFrame;    ///< over classes, if there are several samples
+    GlObject lightFrame;    ///< over radiance and irradiance, and over the depth, or classes
 };
 
 }  // namespace prt

@@ -6,12 +6,16 @@
 namespace prt {
 
 LightProgram::LightProgram(const GlFunctions& gl, std::string defines)
-    : gl_(gl), defines_(std::move(defines)), single_(gl, "screen.vert", "light.frag", defines_) {}
+    : gl_(gl), defines_(std::move(defines)) {
+    of(Pixels::OneSample);
+}
 
-const GlProgram& LightProgram::of(int samples) const {
-    if (samples == 1) return single_;
-    if (!several_) several_.emplace(gl_, "screen.vert", "light.frag", "#define MULTISAMPLED\n" + defines_);
-    return *several_;
+const GlProgram& LightProgram::of(Pixels pixels) const {
+    static constexpr const char* kDefines[] = {"", "#define MULTISAMPLED\n#define ONE_TRIANGLE\n",
+                                               "#define MULTISAMPLED\n"};
+    std::optional<GlProgram>& program = programs_[size_t(pixels)];
+    if (!program) program.emplace(gl_, "screen.vert", "light.frag", kDefines[size_t(pixels)] + defines_);
+    return *program;
 }
 
 }  // namespace prt

@@ -1,4 +1,4 @@
-// light.frag for one and for several samples to a pixel. Internal.
+// light.frag for pixels of one and of several samples. Internal.
 #pragma once
 
 #include <array>
@@ -9,23 +9,28 @@
 
 namespace prt {
 
+/// What a pass over the image lights.
+enum class Pixels {
+    OneSample,    ///< the only sample of each pixel
+    OneTriangle,  ///< pixels all of whose samples see the same
+    Several       ///< pixels whose samples see more than one thing
+};
+
 class LightProgram {
   public:
     /// Compiles it for one sample.
     /// @param defines  of the technique, a line each
     /// @throws Error   the compiler's log
     LightProgram(const GlFunctions& gl, std::string defines);
-    /// Compiles it for several samples when first asked to.
-    /// @param samples  of a pixel
+    /// Compiles it for these pixels when first asked to.
     /// @throws Error   the compiler's log
-    const GlProgram& of(int samples) const;
+    const GlProgram& of(Pixels pixels) const;
     const std::string& defines() const { return defines_; }
 
   private:
     const GlFunctions& gl_;
     std::string defines_;
-    GlProgram single_;
-    mutable std::optional<GlProgram> several_;
+    mutable std::array<std::optional<GlProgram>, 3> programs_;
 };
 
 }  // namespace prt

@@ -98,13 +98,17 @@ void Renderer::State::drawFrame(const CameraFrame& camera, const TechniqueData* 
                                 const RenderOptions& options, const DisplayOptions* shown) {
     frame.drawSurface(camera, options.normalMap);
     if (data) {
-        frame.drawLight(camera, data->use(options.samples), {.shown = shown});
+        frame.drawLight(camera, [&](Pixels pixels) -> const GlProgram& { return data->use(pixels); },
+                        {.shown = shown});
         return;
     }
     if (!baseProgram) baseProgram.emplace(gl, "#define BASE_PASS\n");
-    const GlProgram& program = baseProgram->of(options.samples);
-    program.use();
-    frame.drawLight(camera, program, {.suns = false, .shown = shown});
+    const auto use = [&](Pixels pixels) -> const GlProgram& {
+        const GlProgram& program = baseProgram->of(pixels);
+        program.use();
+        return program;
+    };
+    frame.drawLight(camera, use, {.suns = false, .shown = shown});
 }
 
 void Renderer::State::drawPoints(const Camera& camera, const RenderOptions& options,
@@ -112,11 +116,14 @@ void Renderer::State::drawPoints(const Camera& camera, const RenderOptions& opti
     if (!points) throw InputError("points", "no colours were set", "set them before drawing");
     const CameraFrame view = frame.begin(camera, options);
     frame.drawSurface(view, options.normalMap);
-    const GlProgram& program = points->program.of(options.samples);
-    program.use();
-    program.set("gridSize", points->colours.grid.width, points->colours.grid.height);
-    gl.BindTextureUnit(4, points->colours.texture.name());
-    frame.drawLight(view, program, {.suns = false, .background = false, .shown = shown});
+    const auto use = [&](Pixels pixels) -> const GlProgram& {
+        const GlProgram& program = points->program.of(pixels);
+        program.use();
+        program.set("gridSize", points->colours.grid.width, points->colours.grid.height);
+        gl.BindTextureUnit(4, points->colours.texture.name());
+        return program;
+    };
+    frame.drawLight(view, use, {.suns = false, .background = false, .shown = shown});
     context.check("drawing");
 }
 

@@ -211,9 +211,9 @@ void TechniqueData::checkLight() const {
                      table ? "make one with prt tabulate" : "set an environment");
 }
 
-const GlProgram& TechniqueData::use(int samples) const {
+const GlProgram& TechniqueData::use(Pixels pixels) const {
     PRT_CHECK(program_ != nullptr);
-    const GlProgram& program = program_->of(samples);
+    const GlProgram& program = program_->of(pixels);
     program.use();
     if (usesTable(technique_)) {
         context_.gl().BindTextureUnit(5, table_.texture.name());

@@ -60,8 +60,7 @@ class TechniqueData {
     const PcaMap& basis() const { return basis_; }
 
     /// Uses the program, with uniforms of the technique set and its textures bound to units 4 and 5.
-    /// @param samples  of a pixel
-    const GlProgram& use(int samples) const;
+    const GlProgram& use(Pixels pixels) const;
 
   private:
     void upload(const PointGrid& grid, int perPoint, std::span<const float> values, const char* where);

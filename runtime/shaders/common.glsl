@@ -1,6 +1,8 @@
 // Shared by all shaders. Images have their top row first (glClipControl with GL_UPPER_LEFT).
 
 const float kPi = 3.14159265358979;
+const int kSamples = 4;  // of a pixel, where it has several
+const uint kNoTriangle = 0xffffffffu;
 
 // Where attributes are taken: at the pixel's centre, or, of several samples, where the triangle is.
 #ifdef MULTISAMPLED

@@ -4,13 +4,11 @@
 layout(binding = 0) uniform sampler2D radiance;
 
 uniform ivec2 corner;  // lower left one of the image in the framebuffer
-uniform float exposure;
-uniform int toneCurve;
 
 layout(location = 0) out vec4 outColour;
 
 void main() {
     const ivec2 place = ivec2(gl_FragCoord.xy) - corner;
     const ivec2 pixel = ivec2(place.x, textureSize(radiance, 0).y - 1 - place.y);
-    outColour = vec4(srgbFromLinear(toneMapped(exposure * texelFetch(radiance, pixel, 0).rgb, toneCurve)), 1.0);
+    outColour = vec4(srgbFromLinear(shown(texelFetch(radiance, pixel, 0).rgb)), 1.0);
 }

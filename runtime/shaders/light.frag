@@ -188,18 +188,19 @@ vec3 irradianceOf(ivec2 pixel, int index, uint triangle, out vec3 radiance) {
     return irradiance;
 }
 
-#ifdef MULTISAMPLED
-const int kSamples = 4;
-const uint kNoTriangle = 0xffffffffu;
-uniform int environments;  // 0 or 1
-uniform int toneCurve;  // less than 0: linear, unexposed
-uniform float exposure;
-
-vec3 shown(vec3 radiance) { return toneCurve < 0 ? radiance : toneMapped(exposure * radiance, toneCurve); }
+#if defined(MULTISAMPLED) && defined(ONE_TRIANGLE)
+/// All samples see the same.
+void main() {
+    const ivec2 pixel = ivec2(gl_FragCoord.xy);
+    vec3 radiance;
+    outIrradiance = vec4(irradianceOf(pixel, 0, texelFetch(triangles, pixel, 0).r, radiance), 1.0);
+    outRadiance = vec4(shown(radiance), 1.0);
+}
+#elif defined(MULTISAMPLED)
+uniform int hasEnvironment;
 
 /// Each triangle is lit once; samples are averaged as they are shown, so that an edge before a bright sky is
-/// as smooth as any other. Loops in place of ifs: llvmpipe leaves loops that no pixel is in, and goes through
-/// every if.
+/// as smooth as any other. Some sample sees a triangle.
 void main() {
     const ivec2 pixel = ivec2(gl_FragCoord.xy);
     uvec4 seen;
@@ -207,7 +208,7 @@ void main() {
     bvec4 done = equal(seen, uvec4(kNoTriangle));
     const float none = dot(vec4(done), vec4(1.0));
     vec3 radiances = vec3(0.0), irradiances = vec3(0.0);
-    while (!all(done)) {
+    do {
         const int i = !done.x ? 0 : !done.y ? 1 : !done.z ? 2 : 3;
         const bvec4 same = equal(seen, uvec4(seen[i]));
         const float count = dot(vec4(same), vec4(1.0));
@@ -215,8 +216,8 @@ void main() {
         irradiances += count * irradianceOf(pixel, i, seen[i], radiance);
         radiances += count * shown(radiance);
         done = bvec4(done.x || same.x, done.y || same.y, done.z || same.z, done.w || same.w);
-    }
-    for (int k = 0; k < environments && none > 0.0; ++k) radiances += none * shown(environmentAt(gl_FragCoord.xy));
+    } while (!all(done));
+    if (none > 0.0 && hasEnvironment != 0) radiances += none * shown(environmentAt(gl_FragCoord.xy));
     outIrradiance = vec4(irradiances / max(float(kSamples) - none, 1.0), 1.0);
     outRadiance = vec4(radiances / float(kSamples), 1.0);
 }

@@ -29,6 +29,12 @@ vec3 toneMapped(vec3 linear, int curve) {
     return clamp(curve == 1 ? filmic(colour) : curve == 2 ? neutral(colour) : colour, 0.0, 1.0);
 }
 
+uniform int toneCurve;  // less than 0: linear, unexposed
+uniform float exposure;
+
+/// Radiance as a display takes it, but for the sRGB curve.
+vec3 shown(vec3 radiance) { return toneCurve < 0 ? radiance : toneMapped(exposure * radiance, toneCurve); }
+
 /// [IEC61966-2-1]
 vec3 srgbFromLinear(vec3 linear) {
     return mix(1.055 * pow(linear, vec3(1.0 / 2.4)) - 0.055, 12.92 * linear, lessThanEqual(linear, vec3(0.0031308)));

@@ -64,7 +64,7 @@ TEST(GlFunctions, MissingFunctionIsNamed) {
 
 TEST(Shaders, AllAreCarriedAndCompile) {
     GlContext context;
-    EXPECT_EQ(shaderSources().size(), 13u);
+    EXPECT_EQ(shaderSources().size(), 14u);
     const std::string table = "#define TABLE_LAYERS 2\n#define TABLE_SIZE 4\n";
     for (const std::string defines :
          {"", "#define PER_VERTEX\n", "#define WITH_MEAN\n", "#define MULTISAMPLED\n"})
@@ -72,6 +72,7 @@ TEST(Shaders, AllAreCarriedAndCompile) {
     EXPECT_NO_THROW(GlProgram(context.gl(), "surface.vert", "surface.frag", ""));
     EXPECT_NO_THROW(GlProgram(context.gl(), "screen.vert", "background.frag", ""));
     EXPECT_NO_THROW(GlProgram(context.gl(), "screen.vert", "display.frag", ""));
+    EXPECT_NO_THROW(GlProgram(context.gl(), "screen.vert", "classes.frag", ""));
     EXPECT_NO_THROW(GlProgram(context.gl(), "blend.vert", "blend.frag", "#define SOURCES 2\n", "blend.geom"));
     EXPECT_NO_THROW(context.check("compiling"));
 }

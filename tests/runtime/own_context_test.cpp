@@ -197,6 +197,13 @@ TEST(OwnContext, EveryFunctionLeavesTheState) {
         {"drawPoints", [&] { renderer->drawPoints(camera, options, {}, target); }},
         {"drawImage", [&] { renderer->drawImage(expected.irradiance, {}, target); }},
         {"draw", [&] { renderer->draw(camera, Technique::Unc, options, {}, target); }},
+        {"picture",
+         [&] {
+             RenderOptions four = options;
+             four.samples = 4;
+             renderer->picture(camera, Technique::Unc, four, {});
+         }},
+        {"setLight on the GPU", [&] { renderer->setLight(Technique::Pca, light, {1.0}, 0.5, BlendOn::Gpu); }},
         {"setLight", [&] { renderer->setLight(Technique::Unc, light, {1.0}, 0.5); }},
         {"setSuns",
          [&] {
