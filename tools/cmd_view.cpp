@@ -9,6 +9,7 @@
 #include "tools/command_line.h"
 #include "tools/commands.h"
 #include "tools/environment_arguments.h"
+#include "tools/measure/view_arguments.h"
 #include "tools/table_arguments.h"
 #include "tools/view/app.h"
 #include "tools/view/bindings.h"
@@ -18,7 +19,7 @@ namespace {
 
 struct ViewArguments {
     ViewOptions options;
-    std::string toneText = "none", script, folder = ".";
+    std::string script, folder = ".";
 
     void addTo(CommandLine& line);
     void finish();
@@ -36,16 +37,12 @@ void ViewArguments::addTo(CommandLine& line) {
               fmt::format("shown first [{}; none: pca, or unc without pca.exr]", listedTechniqueNames()));
     line.text("--size", relight.sizeText, "WIDTHxHEIGHT", "of the window");
     line.text("--exposure", relight.exposureText, "STOPS|auto", "brightness");
-    line.choice("--tone", toneText, {"none", "filmic", "neutral"}, "tone curve");
-    line.integer("--samples", options.samples, 1, 4, "a pixel: 1 or 4");
-    line.text("--eye", relight.eyeText, "X,Y,Z", "camera position; else it is placed by the next three");
-    line.text("--target", relight.targetText, "X,Y,Z", "point looked at; else the middle of the scene");
-    line.real("--azimuth", relight.azimuthDeg, -1e6, 1e6,
-              "of the camera around the scene, degrees from +Z towards +X");
-    line.real("--elevation", relight.elevationDeg, -89, 89, "of the camera above the horizon, degrees");
-    line.real("--distance", relight.distance, 0.01, 100,
-              "of the camera, 1 = the scene's bounding sphere fills the picture");
-    line.real("--fov", relight.fovDeg, 1, 160, "vertical field of view, degrees");
+    line.choice("--tone", relight.toneText, {"none", "filmic", "neutral"}, "tone curve");
+    line.integer("--samples", relight.samples, 1, 4, "of a pixel: 1, or 4 for smooth edges");
+    line.choice(
+        "--blend", relight.blendText, {"cpu", "gpu"},
+        "where tables of several environments are blended: before they are made, or from one of each");
+    addCameraOptions(line, relight);
     line.flag("--no-normal-map", relight.noNormalMap, "shade with the mesh's own normals");
     line.flag("--no-background", relight.noBackground, "black where nothing is seen");
     addTableOptions(line, "--table-", relight.tables);
@@ -66,12 +63,9 @@ void ViewArguments::finish() {
     if (!options.technique.empty() && !techniqueFromName(options.technique))
         throw UsageError("--technique", fmt::format("there is no technique called '{}'", options.technique),
                          fmt::format("use one of {}", listedTechniqueNames()));
-    if (options.samples != 1 && options.samples != 4)
-        throw UsageError("--samples", fmt::format("{} is neither 1 nor 4", options.samples));
     relight.techniqueNames = {"all"};
     relight.timeFrames = 1;  // relight wants something to do
     relight.finish();
-    options.toneCurve = toneCurveFromName(toneText).value();
     options.screenshots = folder;
     if (script.empty()) return;
     options.scriptName = script == "-" ? "standard input" : script;

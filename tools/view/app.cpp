@@ -123,8 +123,6 @@ ViewState Viewer::firstState() const {
         state.technique = find(techniqueFromName(options_.technique).value());
     }
     if (options_.firstAlone) state.solo = 0;
-    state.samples = options_.samples;
-    state.toneCurve = options_.toneCurve;
     return state;
 }
 

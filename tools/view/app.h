@@ -13,10 +13,8 @@
 namespace prt::tools {
 
 struct ViewOptions {
-    RelightArguments relight;  ///< finished; of all techniques
-    std::string technique;     ///< shown first; empty: pca where there is, else the first
-    int samples = 1;
-    ToneCurve toneCurve = ToneCurve::None;
+    RelightArguments relight;    ///< finished; of all techniques
+    std::string technique;       ///< shown first; empty: pca where there is, else the first
     bool firstAlone = false;     ///< only the first environment shines at first
     bool measureFrames = false;  ///< draws all the time and counts frames a second
     std::vector<ScriptStep> script;

@@ -119,9 +119,11 @@ void statisticsSection(const SceneView& scene, const PanelFacts& facts) {
     row("frame", fmt::format("{:.1f} ms", statistics.frameMs));
     row("pixels", fmt::format("{} x {}", scene.width(), scene.height()));
     if (facts.framesPerSecond > 0) row("frames", fmt::format("{:.1f} a second", facts.framesPerSecond));
-    row("light switch", fmt::format("{:.2f} ms", statistics.switchMs));
-    row("a pixel takes", fmt::format("{} fetches", statistics.cost.fetches));
-    row("", fmt::format("{} multiply-adds", statistics.cost.multiplyAdds));
+    if (statistics.switches > 0) {
+        row("light switch", fmt::format("{:.2f} ms", statistics.switchMs));
+        row("a pixel takes", fmt::format("{} fetches", statistics.cost.fetches));
+        row("", fmt::format("{} multiply-adds", statistics.cost.multiplyAdds));
+    }
     if (statistics.relativeRmse)
         row("relative RMSE", fmt::format("{:.4f}", *statistics.relativeRmse));
     else

@@ -129,6 +129,8 @@ ViewState SceneView::startState() const {
     view.rotationRad = arguments.rotationRad();
     view.exposureStops = arguments.exposureStops.value_or(0);
     view.autoExposure = !arguments.exposureStops;
+    view.toneCurve = arguments.toneCurve;
+    view.samples = arguments.samples;
     view.normalMap = !arguments.noNormalMap;
     view.background = !arguments.noBackground;
     return view;
