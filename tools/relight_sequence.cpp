@@ -9,6 +9,7 @@
 #include <optional>
 #include <utility>
 
+#include "precompute/base/atomic_file.h"
 #include "precompute/base/error.h"
 #include "precompute/base/log.h"
 #include "precompute/io/environment_file.h"
@@ -78,6 +79,8 @@ class FrameSink {
         std::error_code error;
         if (!folder.empty()) std::filesystem::create_directories(folder, error);
         if (error) throw OutputError(folder.string(), fmt::format("cannot be made: {}", error.message()));
+        // A killed run may have left half a video.
+        removeStaleTemporaries(folder.empty() ? std::filesystem::path(".") : folder);
     }
 
     std::string pattern_;

@@ -198,6 +198,7 @@ TEST_F(SequenceCommand, WithoutFfmpegThereAreNoVideos) {
 TEST_F(SequenceCommand, WhatFfmpegSaysLastIsReported) {
     writeProgram(folder_, "ffmpeg", "echo first >&2; echo 'Unknown encoder libx264' >&2; exit 1\n");
     const Words before = folder_.files();
+    folder_.write("b.mkv.prt-tmp-4194399-0", "what a killed run left");
     const ProcessResult result = relight({"--turntable", "40", "-o", "a.mkv"}, kOwnPath);
     EXPECT_EQ(result.exitCode, 4);
     EXPECT_THAT(result.err, HasSubstr("a.mkv: ffmpeg: Unknown encoder libx264"));
