@@ -1,5 +1,6 @@
-// Draws a bundle's mesh, lit through tables, into float images. Backs of triangles are not drawn, unless
-// their material is double-sided.
+// Draws a bundle's mesh, lit by precomputed visibility, into float images, pictures, or framebuffers of the
+// caller's. Backs of triangles are not drawn, unless their material is double-sided. A context that is the
+// caller's keeps its state (gl_state.h).
 #pragma once
 
 #include <memory>
