@@ -374,7 +374,7 @@ TEST_F(View, ScreenshotsAreNumberedAndNothingElseIsWritten) {
 }
 
 TEST_F(View, StaysOpenUntilItIsToldToEnd) {
-    const ProcessResult interrupted = view("key N\n", {}, "timeout --preserve-status -s INT 3");
+    const ProcessResult interrupted = view("key N\n", {}, "timeout --preserve-status -s INT 2");
     EXPECT_EQ(interrupted.exitCode, 130) << interrupted.err;
     EXPECT_THAT(interrupted.err, HasSubstr("interrupted"));
     const ProcessResult wrong = view("key N\nshow weight 4\n");

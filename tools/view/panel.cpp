@@ -57,10 +57,9 @@ void techniqueSection(const ViewChoices& choices, ViewState& state) {
         ImGui::EndCombo();
     }
     if (const int count = choices.indexCount(state.shown); count > 1) {
-        int number = state.index() + (state.shown == Shown::Weight ? 1 : 0);
-        const int first = state.shown == Shown::Weight ? 1 : 0;
-        if (ImGui::SliderInt("number", &number, first, first + count - 1, "%d", ImGuiSliderFlags_AlwaysClamp))
-            state.setIndex(number - first, choices);
+        int number = state.index();
+        if (ImGui::SliderInt("number", &number, 0, count - 1, "%d", ImGuiSliderFlags_AlwaysClamp))
+            state.setIndex(number, choices);
     }
 }
 

@@ -147,7 +147,7 @@ PointColours pointColours(Shown shown, int index, const Scene& scene, const Visi
             return signedColours(
                 pca->grid, all.subspan(size_t(index)), size_t(pca->components),
                 visibility ? std::span<const Validity>(visibility->validity) : std::span<const Validity>(),
-                fmt::format("weight {} of {}", index + 1, pca->components));
+                fmt::format("weight {} of 0..{}", index, pca->components - 1));
         }
         case Shown::Coefficient: {
             const VisibilityMap& map = needed(visibility);
