@@ -16,14 +16,12 @@ struct ViewRequests {
     int screenshots = 0;
     struct Point {
         double x, y;
+        bool operator==(const Point&) const = default;
     };
     std::optional<Point> lookAt;  ///< point of the window whose surface becomes the target
 
     bool operator==(const ViewRequests&) const = default;
 };
-inline bool operator==(const ViewRequests::Point& a, const ViewRequests::Point& b) {
-    return a.x == b.x && a.y == b.y;
-}
 
 /// Buttons and keys that are down, and what moving and pressing them does. A drag over the height of the
 /// window turns by 180°, and moves a point at the target's distance with the cursor.
