@@ -27,6 +27,8 @@ std::string describe(const std::string& name) {
         return "table: light x cosine x component, four components per RGBA layer, mean";
     if (name.ends_with(".sun.exr"))
         return "sun of an environment: visible share of its disc, direction, irradiance";
+    if (name.starts_with("lightmaps/"))
+        return "lightmap of an environment: SH of the light that arrives, with its bounces";
     return "";
 }
 

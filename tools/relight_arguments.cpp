@@ -212,7 +212,10 @@ void RelightArguments::finish() {
 }
 
 void RelightArguments::checkOutputs() const {
-    if (!isVideoName(output)) checkImageName("--output", output);
+    if (isVideoName(output))
+        checkVideoSize(output, width, height);
+    else
+        checkImageName("--output", output);
     checkImageName("--reference-output", referenceOutput);
     checkImageName("--difference-output", differenceOutput);
     if (output.empty() && !compareReference && timeFrames == 0)

@@ -170,15 +170,20 @@ void VideoWriter::State::fail() {
     throw OutputError(file, said.empty() ? "ffmpeg failed without a word" : fmt::format("ffmpeg: {}", said));
 }
 
-VideoWriter::VideoWriter(const std::string& file, int width, int height, double framesPerSecond) {
+void checkVideoSize(const std::string& file, int width, int height) {
     const Format* format = formatOf(file);
     PRT_CHECK(format != nullptr);
-    PRT_CHECK_LT(0.0, framesPerSecond);
     if (format->evenSize && (width % 2 != 0 || height % 2 != 0))
         throw UsageError(
             "--size",
             fmt::format("{}x{} is odd, {} needs an even width and height", width, height, format->extension),
             fmt::format("for example {}x{}", width + width % 2, height + height % 2));
+}
+
+VideoWriter::VideoWriter(const std::string& file, int width, int height, double framesPerSecond) {
+    const Format* format = formatOf(file);
+    checkVideoSize(file, width, height);
+    PRT_CHECK_LT(0.0, framesPerSecond);
     state_ = std::make_unique<State>(file, width, height);
     std::vector<std::string> arguments = {"ffmpeg",
                                           "-hide_banner",

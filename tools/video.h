@@ -11,6 +11,9 @@ namespace prt::tools {
 
 /// Whether the name's extension is that of a video: .mp4, .mkv (H.264), .webm (VP9) or .gif.
 bool isVideoName(const std::string& file);
+/// @param file  of which isVideoName() is true
+/// @throws UsageError  an odd size, but for .gif
+void checkVideoSize(const std::string& file, int width, int height);
 
 /// Hands frames to ffmpeg as raw pixels. The file appears when it is complete: until finish() it has another
 /// name, and the destructor stops ffmpeg and removes it.
@@ -18,7 +21,7 @@ class VideoWriter {
   public:
     /// Starts ffmpeg, found in PATH.
     /// @param file           of which isVideoName() is true
-    /// @param width, height  of every frame; even, but for .gif
+    /// @param width, height  of every frame, see checkVideoSize
     /// @param framesPerSecond  > 0
     /// @throws UsageError   an odd size
     /// @throws InputError   ffmpeg is not installed

@@ -66,7 +66,7 @@ class Switches : public testing::Test {
 };
 
 TEST_F(Switches, LeaveNothingBehind) {
-    // Sanitizers make a step ten times as long.
+    // Sanitizers make a step several times as long.
     constexpr int kSteps = kSanitized ? 240 : 1000, kWarmUp = kSanitized ? 120 : 240, kCompared = 60;
     const auto renderer = makeRenderer();
     size_t objects = 0, resident = 0, compared = 0;
