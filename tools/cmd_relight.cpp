@@ -15,7 +15,7 @@
 #include "tools/comparison.h"
 #include "tools/exposure.h"
 #include "tools/file_names.h"
-#include "tools/measure/picture.h"
+#include "tools/picture.h"
 #include "tools/relight_arguments.h"
 #include "tools/relight_scene.h"
 #include "tools/relight_sequence.h"

@@ -16,7 +16,7 @@
 #include "precompute/math/sh_rotation.h"
 #include "tools/exposure.h"
 #include "tools/file_names.h"
-#include "tools/measure/picture.h"
+#include "tools/picture.h"
 #include "tools/video.h"
 
 namespace prt::tools {

@@ -15,8 +15,8 @@
 #include "tests/tools/measure_compression_box.h"
 #include "tools/measure/commands.h"
 #include "tools/measure/compression_sheet.h"
-#include "tools/measure/picture.h"
 #include "tools/measure/technique_fields.h"
+#include "tools/picture.h"
 
 namespace prt::tools {
 namespace {

@@ -16,7 +16,7 @@
 #include "tools/comparison.h"
 #include "tools/exposure.h"
 #include "tools/measure/compression_sheet.h"
-#include "tools/measure/picture.h"
+#include "tools/picture.h"
 
 namespace prt::tools {
 namespace {

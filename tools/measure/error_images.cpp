@@ -9,7 +9,7 @@
 #include "precompute/io/exr_file.h"
 #include "precompute/mesh/texel_raster.h"
 #include "tools/measure/output.h"
-#include "tools/measure/picture.h"
+#include "tools/picture.h"
 
 namespace prt::tools {
 namespace {

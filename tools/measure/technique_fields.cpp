@@ -7,7 +7,7 @@
 
 #include "precompute/base/check.h"
 #include "precompute/math/sh.h"
-#include "tools/measure/picture.h"
+#include "tools/picture.h"
 #include "tools/view/point_colours.h"
 
 namespace prt::tools {

@@ -14,8 +14,8 @@
 #include "tools/exposure.h"
 #include "tools/measure/compression_sheet.h"
 #include "tools/measure/output.h"
-#include "tools/measure/picture.h"
 #include "tools/measure/view_arguments.h"
+#include "tools/picture.h"
 
 namespace prt::tools {
 namespace {

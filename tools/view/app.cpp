@@ -11,7 +11,7 @@
 #include "precompute/base/error.h"
 #include "precompute/base/log.h"
 #include "precompute/io/bundle.h"
-#include "tools/measure/picture.h"
+#include "tools/picture.h"
 #include "tools/view/input.h"
 #include "tools/view/panel.h"
 #include "tools/view/scene_view.h"

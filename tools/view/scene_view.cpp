@@ -19,7 +19,7 @@
 #include "tools/background.h"
 #include "tools/comparison.h"
 #include "tools/exposure.h"
-#include "tools/measure/picture.h"
+#include "tools/picture.h"
 #include "tools/relight_suns.h"
 #include "tools/relight_techniques.h"
 #include "tools/view/reference.h"

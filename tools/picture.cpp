@@ -1,5 +1,5 @@
 // Differences as in [IwanickiSloan2012, Figs. 5 and 6].
-#include "tools/measure/picture.h"
+#include "tools/picture.h"
 
 #include <algorithm>
 #include <cmath>
