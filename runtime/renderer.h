@@ -102,11 +102,13 @@ class Renderer {
     void setTable(const NormalTable& table);
     /// The same for any technique that takes a table.
     void setTable(Technique technique, const NormalTable& table);
-    /// Light of any technique that was added: its table, or what it has in place of one.
-    /// @param light  of the bands of the visibility that maps were made from, or more
+    /// Light of any technique that was added: its table, or what it has in place of one. Nothing is done
+    /// where the technique has this light, of these weights and rotation, already.
+    /// @param light        of the bands of the visibility that maps were made from, or more
+    /// @param weights      [environments] any numbers
+    /// @param rotationRad  turn about the up axis
+    /// @param blendOn      techniques with uniforms in place of a table are blended on the CPU always
     /// @throws InputError  the technique was not added, or is ShLightmap; more uniforms than OpenGL takes
-    /// Nothing is done where the technique has this light, of these weights and rotation, already.
-    /// @param blendOn  techniques with uniforms in place of a table are blended on the CPU always
     void setLight(Technique technique, const LiveLight& light, const std::vector<double>& weights,
                   double rotationRad, BlendOn blendOn = BlendOn::Cpu);
     /// How often the technique was given a table or light: the same number, the same light.

@@ -94,7 +94,7 @@ void runViewCommand(int argc, char** argv) {
 #ifdef PRT_WITH_VIEWER
     runViewer(arguments.options).write(line.common().json);
 #else
-    throw InputError("prt view", "this build has no windows",
+    throw InputError("window", "this build has none",
                      "configure it with -DPRT_WITH_VIEWER=ON (packages: tools/install-dependencies viewer)");
 #endif
 }
