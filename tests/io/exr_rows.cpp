@@ -1,4 +1,5 @@
 // OpenEXR files written and read some rows at a time.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -23,7 +24,7 @@ std::vector<ExrPartOut> description(ExrCompression compression) {
         parts[k].height = k == 0 ? kHeight : 7;
         parts[k].compression = compression;
         for (const ExrType type : {ExrType::Float, ExrType::Half, ExrType::Uint})
-            parts[k].channels.push_back({"c" + std::to_string(int(type)), type, nullptr, 4, 4 * kWidth});
+            parts[k].channels.push_back({fmt::format("c{}", int(type)), type, nullptr, 4, 4 * kWidth});
     }
     return parts;
 }
@@ -66,9 +67,9 @@ TEST_P(ExrRows, AreWhatWasWrittenWhateverTheBands) {
         std::vector<uint32_t> numbers(values.size());
         reader.readRows(
             size_t(part), first, rows,
-            {{"c" + std::to_string(int(ExrType::Float)), ExrType::Float, values.data(), 4, 4 * kWidth},
-             {"c" + std::to_string(int(ExrType::Half)), ExrType::Float, halves.data(), 4, 4 * kWidth},
-             {"c" + std::to_string(int(ExrType::Uint)), ExrType::Uint, numbers.data(), 4, 4 * kWidth}});
+            {{fmt::format("c{}", int(ExrType::Float)), ExrType::Float, values.data(), 4, 4 * kWidth},
+             {fmt::format("c{}", int(ExrType::Half)), ExrType::Float, halves.data(), 4, 4 * kWidth},
+             {fmt::format("c{}", int(ExrType::Uint)), ExrType::Uint, numbers.data(), 4, 4 * kWidth}});
         for (int k = 0; k < rows * kWidth; ++k) {
             const float expected = valueAt(part, k % kWidth, first + k / kWidth);
             ASSERT_EQ(values[size_t(k)], expected);

@@ -88,10 +88,11 @@ TEST(IncludeOrder, ThirdPartyHeadersStayOutOfPublicHeaders) {
 }
 
 TEST(IncludeOrder, EmbreeIsUsedInOneFolder) {
-    for (const fs::path& file : sources())
-        if (folderOf(file) != "precompute/rays")
-            for (const std::string& include : includesOf(file))
-                EXPECT_FALSE(include.starts_with("embree")) << file;
+    for (const fs::path& file : sources()) {
+        if (folderOf(file) == "precompute/rays") continue;
+        for (const std::string& include : includesOf(file))
+            EXPECT_FALSE(include.starts_with("embree")) << file;
+    }
 }
 
 }  // namespace

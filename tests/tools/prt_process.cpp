@@ -1,5 +1,6 @@
 #include "tests/tools/prt_process.h"
 
+#include <fmt/format.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -54,10 +55,11 @@ ProcessResult runPrt(const Folder& folder, const std::vector<std::string>& argum
                      const std::string& prelude) {
     // Captured outside the folder, so that its contents are what the command left.
     const std::string capture = folder.path().string() + ".capture";
-    std::string command =
-        "cd " + quoted(folder.path().string()) + " && { " + prelude + " " + quoted(PRT_BINARY);
-    for (const std::string& argument : arguments) command += " " + quoted(argument);
-    command += "; } >" + quoted(capture + ".out") + " 2>" + quoted(capture + ".err") + " </dev/null";
+    std::string words = quoted(PRT_BINARY);
+    for (const std::string& argument : arguments) words += ' ' + quoted(argument);
+    const std::string command =
+        fmt::format("cd {} && {{ {} {}; }} >{} 2>{} </dev/null", quoted(folder.path().string()), prelude,
+                    words, quoted(capture + ".out"), quoted(capture + ".err"));
     const int status = std::system(command.c_str());
     ProcessResult result;
     result.exitCode = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
