@@ -11,6 +11,7 @@
 #include "precompute/math/sh.h"
 #include "precompute/math/sh_product.h"
 #include "precompute/math/sphere_map.h"
+#include "tests/base/sanitized.h"
 #include "tests/compress/table_lights.h"
 
 namespace prt {
@@ -328,17 +329,7 @@ TEST(LookUp, NoJumpAcrossEdgesOfTheCube) {
     }
 }
 
-#if defined(__SANITIZE_ADDRESS__)
-constexpr size_t kLookUps = 50000;
-#elif defined(__has_feature)
-#if __has_feature(address_sanitizer)
-constexpr size_t kLookUps = 50000;
-#else
-constexpr size_t kLookUps = 1000000;
-#endif
-#else
-constexpr size_t kLookUps = 1000000;
-#endif
+constexpr size_t kLookUps = test::kSanitized ? 50000 : 1000000;
 
 // Relative RMS of all coefficients of one colour, looked up in tables of several sizes.
 std::vector<double> lookUpErrors(const EnvironmentSh& light, int shOrder, std::span<const int> sizes) {

@@ -29,19 +29,6 @@ class Showcase {
 /// Memory of this process that is in RAM.
 size_t residentBytes();
 
-/// Built with AddressSanitizer.
-#if defined(__SANITIZE_ADDRESS__)
-inline constexpr bool kSanitized = true;
-#elif defined(__has_feature)
-#if __has_feature(address_sanitizer)
-inline constexpr bool kSanitized = true;
-#else
-inline constexpr bool kSanitized = false;
-#endif
-#else
-inline constexpr bool kSanitized = false;
-#endif
-
 /// √(Σ(a−b)²/Σa²); fails the test where a is black.
 double relativeRmse(const FloatImage& a, const FloatImage& b);
 

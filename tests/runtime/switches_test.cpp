@@ -2,9 +2,10 @@
 // renderer draws under the same light.
 #include <cmath>
 
-#include "context_scene.h"
 #include "precompute/base/error.h"
 #include "runtime/gl_objects.h"
+#include "tests/base/sanitized.h"
+#include "tests/runtime/context_scene.h"
 
 namespace prt {
 namespace {

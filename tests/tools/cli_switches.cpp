@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "tests/base/sanitized.h"
 #include "tests/tools/prt_process.h"
 
 namespace prt::test {
@@ -11,9 +12,9 @@ namespace {
 using Words = std::vector<std::string>;
 
 // Both motions at once: every frame has other weights, and another turn of the light.
-constexpr int kFrames = 1000;
+constexpr int kFrames = kSanitized ? 100 : 1000;
 
-TEST(SwitchCommand, ThousandthFrameIsThatOfAFreshProcess) {
+TEST(SwitchCommand, LateFramesAreThoseOfAFreshProcess) {
     const Folder folder;
     folder.write("box.obj", openBoxObj());
     const auto run = [&](const Words& arguments) {
@@ -30,7 +31,7 @@ TEST(SwitchCommand, ThousandthFrameIsThatOfAFreshProcess) {
     };
     relight({"--env", "sky:sunset", "--env", "sky:clear", "--transition", fmt::format("1:2:{}", kFrames),
              "--rotate-light", std::to_string(kFrames), "-o", "{technique}.{frame}.exr"});
-    for (const int frame : {0, 499, 999}) {
+    for (const int frame : {0, kFrames / 2, kFrames - 1}) {
         const double to = double(frame) / (kFrames - 1);
         relight({"--env", fmt::format("sky:sunset:{:.17g}", 1 - to), "--env",
                  fmt::format("sky:clear:{:.17g}", to), "--rotate",
