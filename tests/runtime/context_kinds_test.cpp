@@ -6,6 +6,7 @@
 #include "precompute/base/error.h"
 #include "runtime/gl_functions.h"
 #include "runtime/gl_objects.h"
+#include "tests/base/sanitized.h"
 
 namespace prt {
 namespace {
