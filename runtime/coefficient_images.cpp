@@ -124,22 +124,11 @@ CoefficientImage uploadCoefficients(const GlContext& context, const PointGrid& g
     return image;
 }
 
-bool sameShape(const TableImage& a, const TableImage& b) {
-    return a.layout == b.layout && a.size == b.size && a.layers == b.layers && a.mean == b.mean &&
-           a.width == b.width && a.height == b.height && a.images == b.images;
-}
-
-void shapeTable(const GlContext& context, const TableImage& like, TableImage& image) {
-    if (image.texture && sameShape(image, like)) return;
+void shapeTable(const GlContext& context, const TableShape& shape, TableImage& image) {
+    if (image.texture && image.shape == shape) return;
     image = {};
-    image.texture = makeArray(context, like.width, like.height, like.images, "table");
-    image.layout = like.layout;
-    image.size = like.size;
-    image.layers = like.layers;
-    image.mean = like.mean;
-    image.width = like.width;
-    image.height = like.height;
-    image.images = like.images;
+    image.texture = makeArray(context, shape.width, shape.height, shape.images, "table");
+    image.shape = shape;
 }
 
 void uploadTable(const GlContext& context, const NormalTable& table, TableImage& image) {
@@ -149,15 +138,7 @@ void uploadTable(const GlContext& context, const NormalTable& table, TableImage&
     const int used = mean ? table.layers - 1 : table.layers, layers = (used + 3) / 4;
     const int groups = 3 * layers + (mean ? 1 : 0);
     const auto [width, height, count, sources] = groupImages(table);
-    TableImage wanted;
-    wanted.layout = table.layout;
-    wanted.size = table.size;
-    wanted.layers = layers;
-    wanted.mean = mean;
-    wanted.width = width;
-    wanted.height = height;
-    wanted.images = groups * count;
-    shapeTable(context, wanted, image);
+    shapeTable(context, {table.layout, table.size, layers, mean, width, height, groups * count}, image);
     std::vector<float> texels(size_t(groups) * sources.size() * 4, 0.0f);
     parallelFor(size_t(groups), 1, [&, &from = sources](size_t group, size_t) {
         const float* planes[4] = {};

@@ -30,22 +30,25 @@ CoefficientImage uploadCoefficients(const GlContext& context, const PointGrid& g
 /// A table over normals: a 2D array whose group colour·layers + i holds coefficients 4i … 4i + 3; then the
 /// RGB mean, if there is one. A group is one image of the table's layout; of a cube six, the faces, each
 /// within a border of the neighbouring faces' texels.
-struct TableImage {
-    GlObject texture;
+struct TableShape {
     std::string layout;
     int size = 0;
     int layers = 0;
     bool mean = false;
     int width = 0, height = 0, images = 0;  ///< of the texture
-    GlObject frame;                         ///< over all images, when something was blended into it
+    bool operator==(const TableShape&) const = default;
 };
-bool sameShape(const TableImage& a, const TableImage& b);
+struct TableImage {
+    GlObject texture;
+    TableShape shape;
+    GlObject frame;  ///< over all images, when something was blended into it
+};
 
 /// Fills an image, or makes it anew when its shape differs.
 /// @throws InputError  larger than OpenGL takes
 void uploadTable(const GlContext& context, const NormalTable& table, TableImage& image);
-/// Makes an image anew, with any values, unless it has the shape of another.
+/// Makes an image anew, with any values, unless it has the shape already.
 /// @throws InputError  larger than OpenGL takes
-void shapeTable(const GlContext& context, const TableImage& like, TableImage& image);
+void shapeTable(const GlContext& context, const TableShape& shape, TableImage& image);
 
 }  // namespace prt

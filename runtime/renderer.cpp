@@ -229,8 +229,9 @@ void Renderer::setLight(Technique technique, const LiveLight& light, const std::
 TableTexture Renderer::tableTexture(Technique technique) const {
     if (!usesTable(technique)) throw InputError(techniqueName(technique), "has no table");
     const TableImage& table = state_->ready(technique).table();
-    const int groups = 3 * table.layers + (table.mean ? 1 : 0);
-    return {table.texture.name(), table.layout, table.size, table.layers, table.mean, table.images / groups};
+    const TableShape& shape = table.shape;
+    const int groups = 3 * shape.layers + (shape.mean ? 1 : 0);
+    return {table.texture.name(), shape.layout, shape.size, shape.layers, shape.mean, shape.images / groups};
 }
 
 std::string Renderer::shaderDefines(Technique technique) const { return state_->ready(technique).defines(); }

@@ -41,8 +41,8 @@ void TableBlender::blend(std::span<const TableImage* const> sources, std::span<c
 void TableBlender::pass(std::span<const TableImage* const> sources, std::span<const float> weights,
                         TableImage& result) {
     const TableImage& first = *sources[0];
-    for (const TableImage* source : sources) PRT_CHECK(source != &result && sameShape(*source, first));
-    shapeTable(context_, first, result);
+    for (const TableImage* source : sources) PRT_CHECK(source != &result && source->shape == first.shape);
+    shapeTable(context_, first.shape, result);
     // Few programs: numbers of sources are powers of two, and what is missing weighs nothing.
     const size_t slots = std::bit_ceil(sources.size());
     if (!programs_.contains(slots))
@@ -54,14 +54,14 @@ void TableBlender::pass(std::span<const TableImage* const> sources, std::span<co
     const GlFunctions& gl = context_.gl();
     if (!result.frame) result.frame = makeFramebufferOver(gl, {result.texture.name()}, 0);
     gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, result.frame.name());
-    gl.Viewport(0, 0, result.width, result.height);
+    gl.Viewport(0, 0, result.shape.width, result.shape.height);
     gl.Disable(GL_DEPTH_TEST);
     program.use();
     program.set("weights", std::span<const float>(padded).first(slots));
     for (size_t i = 0; i < slots; ++i)
         gl.BindTextureUnit(GLuint(i), sources[std::min(i, sources.size() - 1)]->texture.name());
     gl.BindVertexArray(vertexArray_.name());
-    gl.DrawArraysInstanced(GL_TRIANGLES, 0, 3, result.images);
+    gl.DrawArraysInstanced(GL_TRIANGLES, 0, 3, result.shape.images);
     context_.check("blending tables");
 }
 

@@ -158,7 +158,7 @@ void TechniqueData::setTable(const std::function<void(TableImage&)>& fill) {
     PRT_CHECK(usesTable(technique_));
     fill(table_);
     chooseProgram(fmt::format("{}#define TABLE_LAYERS {}\n#define TABLE_SIZE {}\n",
-                              layoutDefine(table_.layout), table_.layers, table_.size));
+                              layoutDefine(table_.shape.layout), table_.shape.layers, table_.shape.size));
     ++lightRevision_;
 }
 

@@ -205,7 +205,8 @@ TEST(GpuBlending, TakesTurnsWithTheCpu) {
 }
 
 std::vector<float> texels(const GlContext& context, const TableImage& image) {
-    std::vector<float> rgba(size_t(image.width) * size_t(image.height) * size_t(image.images) * 4);
+    std::vector<float> rgba(size_t(image.shape.width) * size_t(image.shape.height) *
+                            size_t(image.shape.images) * 4);
     context.gl().GetTextureImage(image.texture.name(), 0, GL_RGBA, GL_FLOAT, GLsizei(rgba.size() * 4),
                                  rgba.data());
     return rgba;
