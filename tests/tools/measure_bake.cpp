@@ -15,6 +15,7 @@
 #include "precompute/mesh/load_mesh.h"
 #include "tests/base/temporary_directory.h"
 #include "tests/rays/shapes.h"
+#include "tests/tools/run_command.h"
 #include "tools/measure/commands.h"
 
 namespace prt::tools {
@@ -128,9 +129,7 @@ TEST(MeasureBake, TheBumpySphereIsClosedAndFacesOutwards) {
 
 void run(std::vector<std::string> arguments) {
     arguments.insert(arguments.begin(), "bake");
-    std::vector<char*> pointers;
-    for (std::string& argument : arguments) pointers.push_back(argument.data());
-    runMeasureBake(int(pointers.size()), pointers.data());
+    test::runCommand(runMeasureBake, arguments);
 }
 
 // The first number under a key.

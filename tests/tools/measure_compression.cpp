@@ -10,6 +10,7 @@
 #include "precompute/math/sh.h"
 #include "tests/base/temporary_directory.h"
 #include "tests/tools/measure_compression_box.h"
+#include "tests/tools/run_command.h"
 #include "tools/measure/commands.h"
 #include "tools/measure/compression_tables.h"
 #include "tools/measure/surface_points.h"
@@ -234,9 +235,7 @@ TEST(CompressionTables, PutTransferMatricesBeside) {
 
 void run(std::vector<std::string> arguments) {
     arguments.insert(arguments.begin(), "compression");
-    std::vector<char*> pointers;
-    for (std::string& argument : arguments) pointers.push_back(argument.data());
-    runMeasureCompression(int(pointers.size()), pointers.data());
+    test::runCommand(runMeasureCompression, arguments);
 }
 
 TEST(MeasureCompressionCommand, WritesCsvAndJson) {

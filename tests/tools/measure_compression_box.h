@@ -4,6 +4,7 @@
 #include <fstream>
 #include <string>
 
+#include "compress/compress_job.h"
 #include "precompute/visibility/precompute_job.h"
 #include "tests/base/temporary_directory.h"
 
@@ -24,6 +25,15 @@ inline std::string boxBundle(const TemporaryDirectory& folder, bool perVertex, P
     settings.rays = 512;
     settings.projection.kind = projection;
     runPrecompute(settings);
+    return settings.bundlePath;
+}
+
+/// The same, compressed to 8 vectors.
+inline std::string compressedBoxBundle(const TemporaryDirectory& folder, bool perVertex) {
+    CompressSettings settings;
+    settings.bundlePath = boxBundle(folder, perVertex, ProjectionKind::Irradiance);
+    settings.components = 8;
+    runCompress(settings);
     return settings.bundlePath;
 }
 

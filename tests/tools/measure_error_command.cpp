@@ -6,6 +6,7 @@
 #include "precompute/io/exr_file.h"
 #include "precompute/io/image.h"
 #include "tests/tools/error_fixture.h"
+#include "tests/tools/run_command.h"
 #include "tools/measure/commands.h"
 
 namespace prt::tools {
@@ -20,9 +21,7 @@ std::string readFile(const std::string& path) {
 
 void run(std::vector<std::string> arguments) {
     arguments.insert(arguments.begin(), "error");
-    std::vector<char*> pointers;
-    for (std::string& argument : arguments) pointers.push_back(argument.data());
-    runMeasureError(int(pointers.size()), pointers.data());
+    test::runCommand(runMeasureError, arguments);
 }
 
 std::string runOn(const TemporaryDirectory& folder, const std::string& bundle,

@@ -5,12 +5,12 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "compress/compress_job.h"
 #include "precompute/base/atomic_file.h"
 #include "precompute/base/error.h"
 #include "precompute/base/log.h"
 #include "tests/base/temporary_directory.h"
 #include "tests/tools/measure_compression_box.h"
+#include "tests/tools/run_command.h"
 #include "tools/measure/commands.h"
 
 namespace prt::tools {
@@ -69,11 +69,7 @@ class FrameTimeCommand : public testing::Test {
   protected:
     void SetUp() override {
         setQuiet(true);
-        bundle_ = test::boxBundle(folder_, false, ProjectionKind::Irradiance);
-        CompressSettings settings;
-        settings.bundlePath = bundle_;
-        settings.components = 8;
-        runCompress(settings);
+        bundle_ = test::compressedBoxBundle(folder_, false);
     }
     void TearDown() override { setQuiet(false); }
     nlohmann::json run(std::vector<std::string> more) {
@@ -85,9 +81,7 @@ class FrameTimeCommand : public testing::Test {
                                               "--elevation", "45",
                                               "--quiet"};
         arguments.insert(arguments.end(), more.begin(), more.end());
-        std::vector<char*> pointers;
-        for (std::string& argument : arguments) pointers.push_back(argument.data());
-        runMeasureFrameTime(int(pointers.size()), pointers.data());
+        test::runCommand(runMeasureFrameTime, arguments);
         return nlohmann::json::parse(readFile(folder_.file("times.json")));
     }
     TemporaryDirectory folder_;

@@ -12,6 +12,7 @@
 #include "precompute/math/sh.h"
 #include "precompute/math/sphere_map.h"
 #include "tests/base/temporary_directory.h"
+#include "tests/tools/run_command.h"
 #include "tools/measure/commands.h"
 
 namespace prt::tools {
@@ -143,9 +144,7 @@ TEST(MeasureParameterization, StopsWhenInterrupted) {
 
 void run(std::vector<std::string> arguments) {
     arguments.insert(arguments.begin(), "parameterization");
-    std::vector<char*> pointers;
-    for (std::string& argument : arguments) pointers.push_back(argument.data());
-    runMeasureParameterization(int(pointers.size()), pointers.data());
+    test::runCommand(runMeasureParameterization, arguments);
 }
 
 TEST(MeasureParameterizationCommand, WritesCsvAndJson) {

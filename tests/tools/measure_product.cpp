@@ -7,6 +7,7 @@
 #include "precompute/base/atomic_file.h"
 #include "precompute/base/error.h"
 #include "tests/base/temporary_directory.h"
+#include "tests/tools/run_command.h"
 #include "tools/measure/commands.h"
 
 namespace prt::tools {
@@ -56,9 +57,7 @@ TEST(MeasureProductCosts, StopsWhenInterrupted) {
 
 void run(std::vector<std::string> arguments) {
     arguments.insert(arguments.begin(), "product");
-    std::vector<char*> pointers;
-    for (std::string& argument : arguments) pointers.push_back(argument.data());
-    runMeasureProduct(int(pointers.size()), pointers.data());
+    test::runCommand(runMeasureProduct, arguments);
 }
 
 TEST(MeasureProductCommand, WritesCsvAndJson) {

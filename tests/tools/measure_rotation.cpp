@@ -12,6 +12,7 @@
 #include "precompute/math/sh.h"
 #include "precompute/math/sh_rotation_taylor_bands.h"
 #include "tests/base/temporary_directory.h"
+#include "tests/tools/run_command.h"
 #include "tools/measure/basis_signals.h"
 #include "tools/measure/commands.h"
 #include "tools/measure/rotation_tables.h"
@@ -226,9 +227,7 @@ TEST(MeasureRotationCosts, PapersNumbersStandBesideTheirMethods) {
 
 void run(std::vector<std::string> arguments) {
     arguments.insert(arguments.begin(), "rotation");
-    std::vector<char*> pointers;
-    for (std::string& argument : arguments) pointers.push_back(argument.data());
-    runMeasureRotation(int(pointers.size()), pointers.data());
+    test::runCommand(runMeasureRotation, arguments);
 }
 
 std::vector<std::string> linesOf(const std::string& path) {

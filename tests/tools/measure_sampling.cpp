@@ -15,6 +15,7 @@
 #include "tests/base/temporary_directory.h"
 #include "tests/math/random_input.h"
 #include "tests/rays/shapes.h"
+#include "tests/tools/run_command.h"
 #include "tools/measure/commands.h"
 #include "tools/measure/sampling_banding.h"
 #include "tools/measure/surface_points.h"
@@ -188,7 +189,7 @@ TEST(SamplingEffort, LiesBetweenTheLogarithms) {
 TEST(PowerSpectrum, KeepsPowerAndPlacesWaves) {
     constexpr size_t kCount = 1024;
     std::vector<double> wave, noise;
-    test::RandomInput random(4);
+    prt::test::RandomInput random(4);
     for (size_t k = 0; k < kCount; ++k) {
         wave.push_back(3 + std::cos(2 * std::numbers::pi * 100 * double(k) / kCount + 0.7));
         noise.push_back(random.uniform(-1, 1));
@@ -258,9 +259,7 @@ TEST(BandingScene, FacesOutwards) {
 
 void run(std::vector<std::string> arguments) {
     arguments.insert(arguments.begin(), "sampling");
-    std::vector<char*> pointers;
-    for (std::string& argument : arguments) pointers.push_back(argument.data());
-    runMeasureSampling(int(pointers.size()), pointers.data());
+    test::runCommand(runMeasureSampling, arguments);
 }
 
 // A pit, as OBJ: occludes itself.

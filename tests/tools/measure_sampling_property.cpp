@@ -6,6 +6,7 @@
 #include "precompute/base/atomic_file.h"
 #include "precompute/io/image.h"
 #include "tests/base/temporary_directory.h"
+#include "tests/tools/run_command.h"
 #include "tools/measure/commands.h"
 #include "tools/measure/sampling_banding.h"
 
@@ -78,9 +79,7 @@ TEST(StudyBanding, TheCommandWritesTablesAndPictures) {
         "sampling", mesh,        "--points", "2",      "--counts", "16",     "--truth",   "1024",
         "--sets",   "fibonacci", "--errors", "none",   "--plot",   "none",   "--banding", "--picture-size",
         "8",        "-o",        prefix,     "--json", json,       "--quiet"};
-    std::vector<char*> pointers;
-    for (std::string& argument : arguments) pointers.push_back(argument.data());
-    runMeasureSampling(int(pointers.size()), pointers.data());
+    test::runCommand(runMeasureSampling, arguments);
     const std::string png = readFile(prefix + "-banding-adaptive-fibonacci-tiled4.png");
     const ByteImage picture = decodeImage(std::vector<uint8_t>(png.begin(), png.end()), "picture");
     EXPECT_EQ(picture.width, 16);

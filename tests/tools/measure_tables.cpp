@@ -8,6 +8,7 @@
 #include "precompute/base/error.h"
 #include "precompute/math/sh.h"
 #include "tests/base/temporary_directory.h"
+#include "tests/tools/run_command.h"
 #include "tools/measure/commands.h"
 
 namespace prt::tools {
@@ -104,9 +105,7 @@ TEST(MeasureTables, StopsWhenInterrupted) {
 
 void run(std::vector<std::string> arguments) {
     arguments.insert(arguments.begin(), "tables");
-    std::vector<char*> pointers;
-    for (std::string& argument : arguments) pointers.push_back(argument.data());
-    runMeasureTables(int(pointers.size()), pointers.data());
+    test::runCommand(runMeasureTables, arguments);
 }
 
 TEST(MeasureTablesCommand, WritesCsvAndJson) {

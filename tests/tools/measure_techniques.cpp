@@ -7,12 +7,12 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "compress/compress_job.h"
 #include "precompute/base/atomic_file.h"
 #include "precompute/base/error.h"
 #include "precompute/base/log.h"
 #include "tests/base/temporary_directory.h"
 #include "tests/tools/measure_compression_box.h"
+#include "tests/tools/run_command.h"
 #include "tools/measure/commands.h"
 #include "tools/measure/compression_sheet.h"
 #include "tools/measure/technique_fields.h"
@@ -72,11 +72,7 @@ class TechniquesCommand : public testing::TestWithParam<bool> {
   protected:
     void SetUp() override {
         setQuiet(true);
-        bundle_ = test::boxBundle(folder_, GetParam(), ProjectionKind::Irradiance);
-        CompressSettings settings;
-        settings.bundlePath = bundle_;
-        settings.components = 8;
-        runCompress(settings);
+        bundle_ = test::compressedBoxBundle(folder_, GetParam());
     }
     void TearDown() override { setQuiet(false); }
     nlohmann::json run(std::vector<std::string> more) {
@@ -96,9 +92,7 @@ class TechniquesCommand : public testing::TestWithParam<bool> {
                                               folder_.file("t.json"),
                                               "--quiet"};
         arguments.insert(arguments.end(), more.begin(), more.end());
-        std::vector<char*> pointers;
-        for (std::string& argument : arguments) pointers.push_back(argument.data());
-        runMeasureTechniques(int(pointers.size()), pointers.data());
+        test::runCommand(runMeasureTechniques, arguments);
         return nlohmann::json::parse(readFile(folder_.file("t.json")));
     }
     ByteImage sheet(const std::string& name) const {
